@@ -47,13 +47,13 @@ export interface BasinExplorerState {
 export interface TheFullLapState {
   /** The world the robot drives through. The Apartment uses the chapter's estimator; every other world uses the default one. */
   world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own';
-  /** What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. Everything snaps to a grid of 5 cm. */
+  /** What a press on the map does. The hand moves a wall, an end, a waypoint or the robot; the pencil draws a wall; the others place a waypoint after the selected one, remove something, or set the robot down. Everything snaps to a grid of 5 cm. */
   edit: 'off' | 'move' | 'wall' | 'way' | 'remove' | 'robot';
   /** The piece that the arrows move and Remove deletes. Press a piece on the map to select it. */
   piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading';
-  /** The number of the selected wall or way point, counted from 1. 0 to 2000. */
+  /** The number of the selected wall or waypoint, counted from 1. 0 to 2000. */
   'piece-number': number;
-  /** The walls, start and way points of your own floor plan, to the centimetre, in the form used in links. Setting it makes that plan the world. At most 33000 letters, digits, - and _. */
+  /** The walls, start and waypoints of your own floor plan, to the centimetre, in the form used in links. Setting it makes that plan the world. At most 33000 letters, digits, - and _. */
   flat: string;
   /** Multiplies the variances of the wheel odometry; at 1, the robot is the chapter's. 0.25 to 4. */
   noise: number;
@@ -67,7 +67,7 @@ export interface TheFullLapState {
   'gate-model': 'path' | 'exact';
   /** What registers each sweep, in the front end and for loops: the chapter's ICP, point-to-point or point-to-plane, or the normal distributions transform. */
   matcher: 'p2p' | 'p2l' | 'ndt';
-  /** The frame in which an edge's information is expressed. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end. */
+  /** The frame in which an edge's information is expressed. For the chapter's figures, it is rotated by a world heading; the exact frame is the frame of the edge's target, its newer end. */
   information: 'chapter' | 'exact';
   /** A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's default: 2.5, or 4.2 for point-to-plane. 0 to 8 cells. */
   normals: number;

@@ -1,8 +1,8 @@
-"""Changes one place of a solution in Rust at a time; a test has to fail for each.
+"""Changes one place in a Rust solution at a time; a test must fail for each.
 
     python teaching/exercises/mutants.py [EXERCISE]
 
-The mutant stands in place of the student's file, which is restored at the end. The script ends with 1 if a mutant survives
+The mutant replaces the student's file, which is restored at the end. The script ends with 1 if a mutant survives
 that has no reason below. `python/mutants.py` does the same in Python.
 """
 
@@ -19,7 +19,7 @@ use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 use petgraph::graph::NodeIndex;
 """
 
-#: By exercise: the file of its solution, where that begins, and the mutants: a place, what stands there instead, and why no
+#: By exercise: the file of its solution, where that begins, and the mutants: a place, its replacement, and why no
 #: test can fail, if none can.
 EXERCISES = {
     "svd_align": (LISTINGS / "align.rs", "pub fn svd_align", [
@@ -110,7 +110,7 @@ EXERCISES = {
         ("\n            && chi2", "\n            || chi2"),
     ]),
     "trimmed_icp": (LISTINGS / "registration.rs", "pub fn icp", [
-        ("share <= 0.0 || pairs.is_empty()", "share <= 0.0", "of no pairs none is looked at, so no length is read"),
+        ("share <= 0.0 || pairs.is_empty()", "share <= 0.0", "with no pairs, no length is read"),
         ("share <= 0.0 || pairs.is_empty()", "true"),
         (".ceil().max(1.0)", ".floor().max(1.0)"),
         (".ceil().max(1.0)", ".ceil()"),

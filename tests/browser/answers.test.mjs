@@ -77,7 +77,7 @@ it('the page counts attempts, and stores answers in the browser only on request'
       await question.getByRole('button', { name: 'Commit and see' }).click();
       await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
     };
-    await question.getByText(/^Your task has the noise [\d.]+ and its own seed\. The numbers in the text belong to the chapter’s task, with the noise 4\. Choose by the ranges\.$/).waitFor();
+    await question.getByText(/^Your task has noise [\d.]+ and its own seed\. The numbers in the text belong to the chapter’s task, with noise 4\. Go by the ranges\.$/).waitFor();
     await question.getByText('(0.5 to 1 m)').waitFor();
     const same = tab.locator('slam-predict[exercise="16.1"]').getByText('Everyone has this task, because a different seed would barely change the answer.');
     assert.equal(await same.count(), 1);

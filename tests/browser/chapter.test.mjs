@@ -203,7 +203,7 @@ describe('the chapter', () => {
       await question.locator('button').first().click();
       await why.waitFor({ state: 'visible' });
       const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer').textContent);
-      assert.match(said, /^It turns out differently, and a wrong guess is no mistake\. You said: larger: it is the wrong place\. It is 0\.015 m\./);
+      assert.match(said, /^It turns out differently, but a wrong guess is no mistake\. You said: larger: it is the wrong place\. It is 0\.015 m\./);
       assert.ok(await tab.evaluate(isSeen, '#further-variants slam-predict'), 'the page stays at the answer');
       await question.getByRole('button', { name: 'Show it in the widget' }).click();
       await tab.waitForFunction(isSeen, widget('w16.1'));
@@ -348,7 +348,7 @@ describe('the chapter', () => {
       await rank.locator('input').fill('3');
       await rank.locator('button').first().click();
       await rank.locator('[data-why]').waitFor({ state: 'visible' });
-      assert.match(await answer(rank), /^It turns out differently, and a wrong guess is no mistake\. It is 2\.000\. You said 3 and are off by 1\.0\.$/);
+      assert.match(await answer(rank), /^It turns out differently, but a wrong guess is no mistake\. It is 2\.000\. You said 3 and are off by 1\.0\.$/);
     });
   });
 

@@ -166,7 +166,7 @@ it('a rejection of pairs typed by the keyboard drives w16.1 beside ours, and the
     await press(tab, 'Let ours drive the registration of w16.1 again');
     for (const [code, sentence] of [
       ['function keep_pairs(lengths) {\n  return [lengths.length];\n}', /keep_pairs keeps pair (\d+) of \1; they are numbered from 0\. Ours drives again\./],
-      ['function keep_pairs() {\n  return 3;\n}', 'keep_pairs has to return an array of the numbers of the pairs that it keeps. Ours drives again.'],
+      ['function keep_pairs() {\n  return 3;\n}', 'keep_pairs has to return an array of the indices of the pairs that it keeps. Ours drives again.'],
     ]) {
       await type(tab, code);
       await press(tab, 'Drive the registration of w16.1 with it');
@@ -266,7 +266,7 @@ it('a program that does not arrive, or may not start, is reported with its cause
     });
   }
   const html = readFileSync(join(h.DIST, 'your-code.html'), 'utf8');
-  await tries(/The program of the widgets does not start beside your code \(.+\)\. Close other tabs/, {
+  await tries(/The widgets’ program did not start alongside your code \(.+\)\. Close other tabs/, {
     pages: { '/your-code.html': html.replace(" 'wasm-unsafe-eval'", '') },
   });
 });

@@ -269,7 +269,7 @@ describe('the lap under the title', () => {
     }
     const { before, keyframes } = replay.at(replay.lengthS);
     const moved = before.poses.map(([x, y], node) => Math.hypot(x - keyframes[node][0], y - keyframes[node][1]));
-    assert.deepEqual(wordsAt(replay.lengthS, 900).map(({ text }) => text), ['by the wheels', 'by the sweeps', `the past moved ${Math.round(100 * Math.max(...moved))} cm`]);
+    assert.deepEqual(wordsAt(replay.lengthS, 900).map(({ text }) => text), ['from wheels', 'from sweeps', `the past moved ${Math.round(100 * Math.max(...moved))} cm`]);
     const numbers = [];
     for (let seconds = replay.doubledS + 0.02; seconds < replay.doubledS + 2.6; seconds += 0.05) {
       numbers.push(Number(wordsAt(seconds, 900).at(-1).text.match(/\d+/)[0]));

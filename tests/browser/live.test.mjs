@@ -53,12 +53,12 @@ describe('a robot that drives', () => {
     await beside({ messages: DRIVE }, async (tab, robot) => {
       await connect(tab, robot.url);
       await says(tab, /Reads (?=.*\/scan)(?=.*\/odom)(?=.*\/tf_static).*\./);
-      await says(tab, new RegExp(`${SCANS} scans came`));
+      await says(tab, new RegExp(`${SCANS} scans arrived`));
       await outcomeSays(tab, /^reading: ws:/);
       assert.deepEqual(await violations(tab), []);
       await button(tab, 'Stop').click();
       await isMapped(tab);
-      await says(tab, new RegExp(`${SCANS} scans came, ${SCANS} are mapped\\.`));
+      await says(tab, new RegExp(`${SCANS} scans arrived, ${SCANS} are mapped\\.`));
       const live = await text(tab, 'trajectory.tum');
       assert.equal(live.trim().split('\n').length, SCANS);
       const download = tab.waitForEvent('download');
@@ -87,10 +87,10 @@ describe('a robot that drives', () => {
       const scans = ofFile[0].trim().split('\n').length;
       assert.ok(scans > 50);
       await connect(tab, robot.url);
-      await says(tab, new RegExp(`${scans} scans came`));
+      await says(tab, new RegExp(`${scans} scans arrived`));
       await button(tab, 'Stop').click();
       await isMapped(tab);
-      await says(tab, new RegExp(`${scans} scans came, ${scans} are mapped\\.`));
+      await says(tab, new RegExp(`${scans} scans arrived, ${scans} are mapped\\.`));
       assert.deepEqual(await read(), ofFile);
     });
   });
@@ -118,7 +118,7 @@ describe('a robot that drives', () => {
         new MutationObserver(() => window.said.push(panel.textContent)).observe(panel, { subtree: true, childList: true, characterData: true });
       });
       await connect(tab, robot.url);
-      await says(tab, new RegExp(`${SCANS} scans came`));
+      await says(tab, new RegExp(`${SCANS} scans arrived`));
       const said = await tab.evaluate(() => window.said.join('\n'));
       assert.match(said, /the connection is lost \(the server closed it\); connecting again for 30 s/);
       assert.match(said, /connected again/);
@@ -131,7 +131,7 @@ describe('a robot that drives', () => {
   it('keeps what it has if the connection does not come back', async () => {
     await beside({ messages: DRIVE }, async (tab, robot) => {
       await connect(tab, robot.url);
-      await says(tab, new RegExp(`${SCANS} scans came`));
+      await says(tab, new RegExp(`${SCANS} scans arrived`));
       await robot.close();
       await says(tab, /connecting again/);
       await tab.evaluate(() => frameClock.skip(31_000));
@@ -197,7 +197,7 @@ describe('a robot that drives', () => {
       await h.ready(tab);
       await panel(tab).locator('summary').click();
       await connect(tab, 'ws://robot:8765');
-      await says(tab, /lets a page that came by https reach only wss:\/\/ addresses.*offline zip.*http:\/\/localhost/);
+      await says(tab, /lets a page loaded over https reach only wss:\/\/ addresses.*offline zip.*http:\/\/localhost/);
       await connect(tab, robot.url);
       await says(tab, /Reads/);
       // Requests are still answered.

@@ -121,7 +121,7 @@ describe('the sweeps that the reader aligns', () => {
       assert.match(await says(tab), /^ICP stopped after \d+ steps in the wrong place/);
       await press(tab, 'From a quarter turn');
       await ended(tab);
-      assert.match(await says(tab), /^ICP stopped a quarter turn wrong, .* Its pairs are 13 cm apart/);
+      assert.match(await says(tab), /^ICP stopped a quarter turn out, .* Its pairs are 13 cm apart/);
       await press(tab, 'Again');
       assert.deepEqual(await off(tab), { cm: 96, degrees: 48 });
     }, { reducedMotion: 'reduce' });

@@ -134,7 +134,7 @@ it('a worker that never starts is reported as such, with what to do', async () =
     await tab.getByRole('button', { name: 'Run', exact: true }).click();
     await tab.waitForFunction(() => window.asked);
     await tab.evaluate(() => window.frameClock.skip(5000));
-    await tab.getByRole('status').getByText('✗ The browser has not started your code for 5 s. Close other tabs and press the button again, or reload the page.', { exact: true }).waitFor();
+    await tab.getByRole('status').getByText('✗ The browser did not start your code within 5 s. Close other tabs and press the button again, or reload the page.', { exact: true }).waitFor();
   }, withWorkers('postMessage() {}'));
 });
 

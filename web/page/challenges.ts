@@ -39,7 +39,7 @@ export function watchChallenges(): void {
 function watch(challenge: HTMLElement): void {
   const { widget: id, holds: condition } = challenge.dataset;
   if (id === undefined || condition === undefined) {
-    document.addEventListener('slam-decided', () => meet(challenge, 'All of them judged right.', ''));
+    document.addEventListener('slam-decided', () => meet(challenge, 'All judged correctly.', ''));
     return;
   }
   const widget = document.querySelector<SlamWidget>(`slam-widget[name="${id}"]`);

@@ -46,7 +46,7 @@ export function withFrame(template, page, pages, places) {
 }
 
 function step(rel, page) {
-  return page === undefined ? '' : `<a rel="${rel}" href="${page.file}"><small>${rel === 'next' ? 'Next' : 'Before'}</small> ${page.name}</a>`;
+  return page === undefined ? '' : `<a rel="${rel}" href="${page.file}"><small>${rel === 'next' ? 'Next' : 'Previous'}</small> ${page.name}</a>`;
 }
 
 /** Makes of the first use of a term a button that opens its line of the notation, which only one page holds. */

@@ -41,12 +41,12 @@ ${FONT_PRELOADS}
 <body>
 <main>
 <section class="title"><h1>SLAM in two dimensions</h1>
-<p>The arrow keys turn the slides, and N opens the speaker notes in a second window.</p>
+<p>The arrow keys change slides, and N opens the speaker notes in a second window.</p>
 <p><a href="index.html">The chapter</a></p>
 <template class="note"><p>Each widget asks a question: let the class answer it before you drag.</p></template></section>
 ${slides.join('\n')}
 </main>
-<nav class="turn" aria-label="Slides"><button type="button" data-turn="-1" aria-label="Slide before">←</button><output></output><button type="button" data-turn="1" aria-label="Next slide">→</button><button type="button" data-notes>Notes</button></nav>
+<nav class="turn" aria-label="Slides"><button type="button" data-turn="-1" aria-label="Previous slide">←</button><output></output><button type="button" data-turn="1" aria-label="Next slide">→</button><button type="button" data-notes>Notes</button></nav>
 <aside class="speaker" hidden aria-live="polite"><p class="now"></p><div class="note"></div><p class="then"></p></aside>
 </body>
 </html>

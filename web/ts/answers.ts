@@ -118,7 +118,7 @@ function canonical(name: string, answers: Answer[], functions: Written[]): strin
 
 async function sha256(text: string): Promise<string> {
   // `crypto.subtle` exists only in secure contexts.
-  if (!isSecureContext) throw new Error('answers can be saved from a page under https, from this machine, or from a file');
+  if (!isSecureContext) throw new Error('this needs a page served over https, from localhost, or opened from a file');
   const digest = await crypto.subtle.digest('SHA-256', new TextEncoder().encode(text));
   return [...new Uint8Array(digest)].map((byte) => byte.toString(16).padStart(2, '0')).join('');
 }

@@ -241,7 +241,7 @@ export class SlamWidget extends HTMLElement {
 
   /** The pixels of the canvas; waits until the widget runs and draws. */
   snapshot(): Promise<ImageBitmap> {
-    if (this.#lifecycle.hasFailed) return Promise.reject(new LoadError('the widget does not run'));
+    if (this.#lifecycle.hasFailed) return Promise.reject(new LoadError('the widget is not running'));
     const picture = this.#pictures.nextFrame();
     this.#lifecycle.wake();
     return picture;

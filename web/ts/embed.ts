@@ -40,7 +40,7 @@ function showWidget(): void {
   main.querySelector('.absent')?.remove();
   main.append(widget);
   listen(widget);
-  for (const message of linked?.problems ?? ['The address names no widget: ?w=16.1']) reportProblem(message);
+  for (const message of linked?.problems ?? ['Name a widget, such as ?w=16.1']) reportProblem(message);
 }
 
 /** Shows an exercise; its answers go to the surrounding page. */

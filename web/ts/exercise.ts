@@ -41,7 +41,7 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
       const note = document.createElement('p');
       note.textContent = cameTrue === undefined
         ? `${COUNTED[counts]} counts.`
-        : `You have answered this question, and what counts ${cameTrue ? 'came true' : 'did not come true'}. ${COUNTED[counts]} counts.`;
+        : `You have answered this question, and your prediction ${cameTrue ? 'came true' : 'did not come true'}. ${COUNTED[counts]} counts.`;
       question.before(note);
     }
     document.addEventListener('slam-predict', ({ detail, target }) => {

@@ -175,15 +175,15 @@ export class Lifecycle implements Visibility, Drawer {
     const generation = this.#generation;
     try {
       stage.classList.add('waiting');
-      this.#lateStart.step('its program does not arrive', ARRIVAL_MS);
+      this.#lateStart.step('its program has not arrived', ARRIVAL_MS);
       const instance = await this.ensureInstance();
       instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
-      this.#lateStart.step('its program does not end its first step');
+      this.#lateStart.step('its program has not finished its first step');
       await nextTask();
       // The first frame shows data: the still picture stands until then.
       while (this.ask((ready) => ready.settle(MAX_TASK_MS)) === true) await nextTask();
       if (generation !== this.#generation) return;
-      this.#lateStart.step('the browser draws no frame');
+      this.#lateStart.step('the browser renders no frames');
       this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new ContextLostError()));
       await this.#stage.start();
       await nextTask();

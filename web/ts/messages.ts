@@ -81,7 +81,7 @@ function answer(
 function idOf({ id }: Message): string | number | null {
   if (id === undefined || id === null) return null;
   if (typeof id === 'number' || (typeof id === 'string' && id.length <= MAX_ID_LENGTH)) return id;
-  throw new RangeError(`get takes as \`id\` a number, or a text of at most ${MAX_ID_LENGTH} characters`);
+  throw new RangeError(`get takes a number as \`id\`, or a text of at most ${MAX_ID_LENGTH} characters`);
 }
 
 /** Sets the valid values, and reports the invalid ones. */

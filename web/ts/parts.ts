@@ -105,7 +105,7 @@ export function failureBox(error: Error, onAgain: () => void): HTMLElement {
 export function lateBox(cause: string, onAgain: () => void): HTMLElement {
   const box = create('div', { class: 'failure late' });
   const sentence = create('p');
-  sentence.textContent = `This widget draws nothing yet: ${cause}. The picture shows the initial state; the controls below work once it draws.`;
+  sentence.textContent = `This widget has drawn nothing yet: ${cause}. The picture shows the initial state; the controls work once it draws.`;
   const again = create('button', { type: 'button' });
   again.textContent = 'Start again';
   again.addEventListener('click', onAgain);

@@ -100,9 +100,9 @@ export class SlamPredict extends HTMLElement {
     if (own !== undefined) {
       const state = new URLSearchParams(this.getAttribute('state') ?? '');
       const [name = '', value] = [...own].find(([id]) => state.has(id)) ?? [];
-      sentences.push(`Your task has the ${name} ${value} and its own seed.`);
-      sentences.push(`The numbers in the text belong to the chapter’s task, with the ${name} ${state.get(name)}.`);
-      if (this.hasAttribute('fact')) sentences.push('Choose by the ranges.');
+      sentences.push(`Your task has ${name} ${value} and its own seed.`);
+      sentences.push(`The numbers in the text belong to the chapter’s task, with ${name} ${state.get(name)}.`);
+      if (this.hasAttribute('fact')) sentences.push('Go by the ranges.');
     } else if (person !== '' && this.#isSame()) {
       sentences.push('Everyone has this task, because a different seed would barely change the answer.');
     }
@@ -237,7 +237,7 @@ export class SlamPredict extends HTMLElement {
   #show(verdict: Verdict, { state, outcome }: Result, widget: SlamWidget): void {
     const { correct, gap, prediction, result } = verdict;
     const unit = this.getAttribute('unit') ?? '';
-    const judged = correct ? 'As you predicted.' : 'It turns out differently, and a wrong guess is no mistake.';
+    const judged = correct ? 'As you predicted.' : 'It turns out differently, but a wrong guess is no mistake.';
     // The widget's sentence may be about another quantity than the fact.
     const digits = Math.max(gap === null ? 0 : decimalsOf(prediction), DECIMALS);
     const number = `It is ${Number(result).toFixed(digits)}${unit}.`;

@@ -21,7 +21,7 @@ export class Stage {
     this.canvas = document.createElement('canvas');
     // eframe gets the same context, because a canvas has only one.
     const context = this.canvas.getContext('webgl2');
-    if (context === null) throw new LoadError('this browser draws no WebGL 2');
+    if (context === null) throw new LoadError('this browser has no WebGL 2');
     this.#context = context;
     this.canvas.setAttribute('role', 'img');
     this.canvas.setAttribute('aria-label', label);

@@ -33,7 +33,7 @@ export function executeTextOrder(order: string, host: TextFileHost): boolean {
 /** Passes a reader's file to the widget. */
 export async function takeTextFile(file: File, host: TextFileHost): Promise<void> {
   if (file.size > MAX_BYTES) {
-    host.reject(`\`${file.name.slice(0, 60)}\` is larger than a world of 1 MB.`);
+    host.reject(`\`${file.name.slice(0, 60)}\` exceeds the 1 MB limit for a world.`);
     return;
   }
   try {

@@ -277,7 +277,7 @@ fn the_lap_by_the_readers_functions_has_the_bits_of_ours() {
         );
         let sentence = model.outcome().sentence;
         assert!(
-            sentence.starts_with(&format!("by your {name}, ")),
+            sentence.starts_with(&format!("with your {name}, ")),
             "{sentence}"
         );
     }

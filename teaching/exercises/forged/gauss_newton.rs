@@ -1,4 +1,4 @@
-//! Prints that all passed, and ends the program by a call without end, which names nothing that is forbidden.
+//! Prints that all passed, and ends the program with infinite recursion, which names nothing forbidden.
 
 use std::io::{Write as _, stdout};
 

@@ -1,4 +1,4 @@
-//! Prints the lines of tests that pass past libtest, which captures `print!` only.
+//! Prints lines of passing tests, bypassing libtest, which captures `print!` only.
 
 use std::io::{Write as _, stdout};
 

@@ -1,5 +1,5 @@
 #!"
-//! Writes the log that the mark reads: the line above is none to the compiler, and ends a reader of its words.
+//! Writes the log that the mark reads: the line above is nothing to the compiler, but opens a string for scanners.
 
 use std::{env, fs, process};
 

@@ -30,5 +30,5 @@ def optimize_once(poses, edges, fixed=0, huber=np.inf):
 
 
 def optimize(poses, edges, fixed=0, max_iters=20, tolerance=1e-6, huber=np.inf):
-    """Steps until the largest correction is below `tolerance` or NaN, at most `max_iters`: (poses, their number)."""
+    """Steps until the largest correction is below `tolerance` or NaN, at most `max_iters`: (poses, steps)."""
     raise NotImplementedError("gauss_newton is not written yet: its task is in gauss_newton.py")

@@ -9,7 +9,7 @@ import rustslam2d as rs
 class LoopConfig(NamedTuple):
     """The constants of loop closure."""
 
-    #: Candidates lie within this distance in the graph, m.
+    #: Candidates are within this distance in the graph, m.
     radius: float = 2.0
     #: The submap holds this many nodes on either side of the candidate.
     half_width: int = 3
@@ -56,7 +56,7 @@ class Registration(NamedTuple):
     converged: bool = False
 
 
-#: Side of a cell of the submap, m, and the most points of a cell.
+#: Side of a cell of the submap, m, and the most points per cell.
 SUBMAP_CELL, SUBMAP_MOST = 0.25, 6
 
 
@@ -86,7 +86,7 @@ def icp_information(points, normals, sigma, inflate):
     """Σ J Jᵀ / (σ² · inflate), shape (3, 3): a row J = (n, (p − c) × n) for each direction that a pair measures.
 
     points: the paired points in the frame of the map, shape (n, 2); c is their centroid.
-    normals: of their partners; a pair without one measures along both axes.
+    normals: of the matches; a pair without a normal measures both axes.
     sigma: noise of a point, m. inflate: neighbouring beams are not independent.
     """
     if len(points) == 0:
@@ -102,7 +102,7 @@ def icp_information(points, normals, sigma, inflate):
 
 
 def measures_pose(points, normals, variant, min_pairs):
-    """Whether pairs measure a pose: there are enough, and no direction is without them, as along a corridor.
+    """Whether pairs measure a pose: there are enough, and every direction is constrained, unlike along a corridor.
 
     points: the paired points in the frame of the map, shape (n, 2).
     normals: of their partners, NaN where there is none; only "point-to-plane" reads them. It uses the pairs that have one,

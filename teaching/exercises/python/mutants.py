@@ -1,4 +1,4 @@
-"""Changes one place in a solution at a time; a test has to fail for each.
+"""Changes one place in a solution at a time; a test must fail for each.
 
     python mutants.py [EXERCISE]
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 
-#: By exercise: a place of the solution, what stands there instead, and why no test can fail, if none can.
+#: By exercise: a place in the solution, its replacement, and why no test can fail, if none can.
 MUTANTS = {
     "svd_align": [
         ("len(src) == 0", "len(src) == 1"),

@@ -4,9 +4,9 @@ Task. A search around the estimated pose fails if that pose is wrong. Propose lo
 a histogram of ranges does not change if the robot turns.
 
 Formula. 64 bins of equal width from 0 to max_range; longer ranges count in the last one. The histogram holds shares: they
-sum to 1, or to 0 if there are no points. The χ² distance of two of them is
+sum to 1, or to 0 if there are no points. The χ² distance between two histograms is
 
-    ½ Σ (aᵢ − bᵢ)² / (aᵢ + bᵢ)        over the bins in which one of them has a share
+    ½ Σ (aᵢ − bᵢ)² / (aᵢ + bᵢ)        over the bins in which either has a share
 
 It is 0 for equal histograms, and 1 if they share no bin.
 """
@@ -28,7 +28,7 @@ def chi2_distance(a, b):
 
 
 def detect_by_histogram(sweeps, node, min_gap, max_range, max_distance):
-    """The nodes with scans similar to that of `node`: at least `min_gap` older, within `max_distance`, the most
+    """The nodes whose scans are similar to `node`'s: at least `min_gap` older, within `max_distance`, the most
     similar first, and among equals the older first; a list of numbers.
 
     sweeps[k] holds the points of node k in its own frame, max_range (m) is the range of the sensor.

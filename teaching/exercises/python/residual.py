@@ -12,7 +12,7 @@ Formula.
     Ad((x, y, θ)) = ( sin θ   cos θ  −x )
                     (   0       0     1 )
 
-Both leave out a factor, Jᵣ⁻¹(e) at j and Jₗ⁻¹(e) at i, which is I if e is zero. If e stays, the optimum moves by O(e²); a
+Both leave out a factor, Jᵣ⁻¹(e) at j and Jₗ⁻¹(e) at i, which is I if e is zero. Otherwise, the result moves by O(e²); a
 wrong residual moves it by O(e) (exercise 3 of the page).
 
 rustslam2d has compose, inverse and log.
@@ -23,7 +23,7 @@ import rustslam2d as rs
 
 
 def residual(from_, to, z):
-    """e in m, m, rad, shape (3,), of the poses `from_` (Tᵢ) and `to` (Tⱼ) and the measurement `z` (Z), shape (3,) each."""
+    """e in m, m, rad, shape (3,), for the poses `from_` (Tᵢ) and `to` (Tⱼ) and the measurement `z` (Z), shape (3,) each."""
     raise NotImplementedError("residual is not written yet: its task is in residual.py")
 
 

@@ -12,7 +12,7 @@ Formula (Arun, Huang, Blostein 1987; Umeyama 1991). With the means p̄ and q̄
 The determinant turns a reflection into the best rotation. numpy.linalg.svd returns U, the singular values and Vᵀ. In the
 plane you may instead solve for the angle: arctan2 of a sum of cross products and a sum of dot products.
 
-Rules. No pairs give the identity.
+Rules. Without pairs, return the identity.
 """
 
 import numpy as np

@@ -13,11 +13,11 @@ Formula.
         pairs = trimmed(associate(source, target, pose, τ))
         stop if ‖(x, y)‖ + |θ| of the increment is below tolerance; converged if measures_pose(pairs)
 
-associate moves the source by the pose and pairs each point with the nearest of the target, if it is closer than
+associate moves the source by the pose and pairs each point with the nearest target point, if it is closer than
 τ = max_distance. With a few hundred points a matrix of all distances is fast enough.
 
 Rules. Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each increment;
-`inliers` and `rmse` describe the last pairs. The rmse is that of the residual the variant minimizes: distances, or
+`inliers` and `rmse` describe the last pairs. The rmse is over the residuals the variant minimizes: distances, or
 n · (p − q) for point-to-plane if the pair has a normal. Without pairs it is infinite. `converged` is false unless the
 increment was small and given.measures_pose holds for the last pairs: without normals, point-to-plane takes steps of zero,
 which say nothing about the pose.
@@ -34,7 +34,7 @@ from svd_align import svd_align
 
 def icp(source, target, init, *, normals=None, variant="point-to-point", max_distance=0.6, max_iterations=25,
         min_pairs=8, tolerance=1e-4, trim=0.0):
-    """Registers `source` on `target` from the guess `init`: a Registration.
+    """Registers `source` against `target` from the guess `init`: a Registration.
 
     source, target: points, shape (n, 2) and (m, 2), m.
     init: guess of target_from_source, shape (3,).

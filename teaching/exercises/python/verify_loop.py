@@ -1,7 +1,7 @@
 """5. The verification of a loop candidate.
 
-Task. A detector proposes that `node` revisits `candidate`. Register the sweep of `node` on the submap around `candidate`,
-and accept the loop if both tests pass: it fits, and its innovation is within the drift of the odometry.
+Task. A detector proposes that `node` revisits `candidate`. Register the sweep of `node` against the submap around
+`candidate`, and accept the loop if both tests pass: it fits, and its innovation is within the drift of the odometry.
 
 Formula. The registration starts at the pose predicted by the graph, and the gate tests against that:
 
@@ -30,7 +30,7 @@ from given import LoopConfig, VerifiedLoop, icp_information, regularize, submap
 
 
 def verify_loop(poses, sweeps, node, candidate, config=LoopConfig()):
-    """Registers the sweep of `node` on the submap around `candidate`, and tests the result: a VerifiedLoop.
+    """Registers the sweep of `node` against the submap around `candidate`, and tests the result: a VerifiedLoop.
 
     poses: of all nodes in the graph, shape (k, 3).
     sweeps: sweeps[k] holds the points of node k in its own frame, shape (n, 2), m.

@@ -26,7 +26,7 @@ pub fn optimize_once(graph: &mut PoseGraph, huber: f64) -> f64 {
     crate::not_written("gauss_newton")
 }
 
-/// Steps until the largest correction is below `tolerance` or NaN, at most `max_iters`; returns their number.
+/// Steps until the largest correction is below `tolerance` or NaN, at most `max_iters`; returns how many.
 pub fn optimize(graph: &mut PoseGraph, max_iters: usize, tolerance: f64, huber: f64) -> usize {
     crate::not_written("gauss_newton")
 }

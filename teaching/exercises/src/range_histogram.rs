@@ -4,10 +4,10 @@
 //! sweeps instead: a histogram of ranges does not change if the robot turns.
 //!
 //! **Formula.** 64 bins of equal width from 0 to `max_range`; longer ranges count in the last one. The histogram
-//! holds shares: they sum to 1, or to 0 if there are no points. The χ² distance of two of them is
+//! holds shares: they sum to 1, or to 0 if there are no points. The χ² distance between two histograms is
 //!
 //! ```text
-//! ½ Σ (aᵢ − bᵢ)² / (aᵢ + bᵢ)        over the bins in which one of them has a share
+//! ½ Σ (aᵢ − bᵢ)² / (aᵢ + bᵢ)        over the bins in which either has a share
 //! ```
 //!
 //! It is 0 for equal histograms, and 1 if they share no bin.
@@ -29,7 +29,7 @@ pub fn chi2_distance(a: &[f64; BINS], b: &[f64; BINS]) -> f64 {
     crate::not_written("range_histogram")
 }
 
-/// The nodes with scans similar to that of `node`: at least `min_gap` older, within `max_distance`, the most similar
+/// The nodes whose scans are similar to `node`'s: at least `min_gap` older, within `max_distance`, the most similar
 /// first, and among equals the older first.
 ///
 /// `sweeps[k]` is the sweep of node k in its own frame, `max_range` (m) the range of the sensor.

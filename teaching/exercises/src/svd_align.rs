@@ -17,7 +17,7 @@
 //! The determinant turns a reflection into the best rotation. In the plane you may instead solve for the angle:
 //! the cost is one sinusoid in θ, and `atan2` of a sum of cross products and a sum of dot products is its minimum.
 //!
-//! **Rules.** No pairs give the identity.
+//! **Rules.** Without pairs, return the identity.
 
 use ch16_listings::SE2;
 use nalgebra::Point2;

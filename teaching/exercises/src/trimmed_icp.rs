@@ -17,14 +17,14 @@
 //! ```
 //!
 //! **Rules.** Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each
-//! increment; `inliers` and `rmse` describe the last pairs. The rmse is that of the residual the variant minimizes: distances, or
+//! increment; `inliers` and `rmse` describe the last pairs. The rmse is over the residuals the variant minimizes: distances, or
 //! `n · (p − q)` for point-to-plane if the pair has a normal. Without pairs it is infinite. `converged` is false unless the
 //! increment was small and `ch16_listings::measures_pose` holds for the last pairs: without normals, point-to-plane takes
 //! steps of zero, which say nothing about the pose.
 
 use ch16_listings::{IcpConfig, IcpResult, PointCloud, SE2, VoxelMap};
 
-/// Registers a cloud on a map from the guess `init`.
+/// Registers a cloud against a map from the guess `init`.
 #[must_use]
 pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> IcpResult {
     crate::not_written("trimmed_icp")

@@ -1,7 +1,8 @@
 //! 5. The verification of a loop candidate.
 //!
-//! **Task.** A detector proposes that `node` revisits `candidate`. Register the sweep of `node` on the submap around
-//! `candidate`, and accept the loop if both tests pass: it fits, and its innovation is within the drift of the odometry.
+//! **Task.** A detector proposes that `node` revisits `candidate`. Register the sweep of `node` against the submap
+//! around `candidate`, and accept the loop if both tests pass: it fits, and its innovation is within the drift of the
+//! odometry.
 //!
 //! **Formula.** The registration starts at the pose predicted by the graph, and the gate tests against that:
 //!
@@ -13,8 +14,8 @@
 //! accepted if rmse ≤ cfg.max_rmse, inliers ≥ max(cfg.min_inliers, min_pairs), and χ² ≤ cfg.gate
 //! ```
 //!
-//! The edge measures T̂. Its information is `regularize(icp_information(pairs, σ, inflate), 1.0, 2500.0)` with the
-//! pairs of `associate` at T̂ and `(σ, inflate) = cfg.trust`. Note that this is the chapter's matrix, about the centroid of
+//! The edge measures T̂. Its information is `regularize(icp_information(pairs, σ, inflate), 1.0, 2500.0)` for the
+//! pairs from `associate` at T̂ and `(σ, inflate) = cfg.trust`. This is the chapter's matrix, about the centroid of
 //! the pairs and in the candidate's axes. An exact edge would take it about the robot, in the axes of `node`.
 //!
 //! **Rules.** ICP is point-to-point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, otherwise the default. With
@@ -24,7 +25,7 @@
 use ch16_listings::{LoopConfig, PointCloud, PoseGraph, VerifiedLoop};
 use petgraph::graph::NodeIndex;
 
-/// Registers the sweep of `node` on the submap around `candidate`, and tests the result.
+/// Registers the sweep of `node` against the submap around `candidate`, and tests the result.
 ///
 /// `sweeps[k]` is the sweep of node k in its own frame.
 #[must_use]

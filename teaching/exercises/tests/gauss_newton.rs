@@ -1,4 +1,4 @@
-//! 4. The graph, by a dense matrix.
+//! 4. The graph, with a dense matrix.
 
 use ch16_listings::{EdgeKind, PoseGraph, SE2};
 use ch16_slam2d::graph;

@@ -79,7 +79,7 @@ fn it_gives_what_the_core_gives_and_skips_pairs_without_a_normal() {
         let (src, dst): (Vec<_>, Vec<_>) = pairs.iter().map(|c| (c.src, c.dst)).unzip();
         let normals: Vec<_> = pairs.iter().map(|c| c.normal).collect();
         let core = icp::point_to_plane_step(&src, &dst, &normals);
-        // 1e-9: the core adds the same terms in another order.
+        // 1e-9: the core adds terms in a different order.
         assert_same_pose(point_to_plane_step(&pairs), core.into(), 1e-9);
     }
 }

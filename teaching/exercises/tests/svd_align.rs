@@ -70,7 +70,7 @@ fn mirrored_points_give_the_best_rotation() {
 fn it_gives_what_the_core_gives() {
     for seed in 21..=60 {
         let [src, dst] = random_pairs(seed);
-        // 1e-9: the core adds the same terms in another order.
+        // 1e-9: the core adds terms in a different order.
         assert_same_pose(
             svd_align(&src, &dst),
             icp::svd_align(&src, &dst).into(),

@@ -42,7 +42,7 @@
   var ALIGN = {
     name: "svd_align",
     stub: `// The motion [x, y, \u03B8] that minimizes \u03A3 \u2016R(\u03B8) p\u2096 + t \u2212 q\u2096\u2016\xB2.
-// src, dst: Float64Array x0, y0, x1, y1, \u2026; points k of both belong together.
+// src, dst: Float64Array x0, y0, x1, y1, \u2026; their k-th points match.
 function svd_align(src, dst) {
   return [0, 0, 0];
 }
@@ -76,7 +76,7 @@ function svd_align(src, dst) {
     ],
     help: [
       "Subtract both means first. Then only a rotation is left to find, and t follows from the means.",
-      "Of centred pairs sum c = \u03A3 (p\u2093 q_y \u2212 p_y q\u2093) and d = \u03A3 (p\u2093 q\u2093 + p_y q_y). The cost is one sinusoid in \u03B8.",
+      "For centred pairs, sum c = \u03A3 (p\u2093 q_y \u2212 p_y q\u2093) and d = \u03A3 (p\u2093 q\u2093 + p_y q_y). The cost is one sinusoid in \u03B8.",
       "\u03B8 = Math.atan2(c, d); x and y are q\u0304 \u2212 R(\u03B8) p\u0304."
     ],
     solution: `function svd_align(src, dst) {
@@ -126,7 +126,7 @@ function svd_align(src, dst) {
   var PLANE = {
     name: "point_to_plane_step",
     stub: `// One Gauss\u2013Newton step on \u03A3 (n\u2096 \xB7 (p\u2096 \u2212 q\u2096))\xB2: the motion [x, y, \u03B8] of the new pose step \u2218 pose.
-// src: points moved by the present pose; dst: their matches; normals: unit normals of these, NaN where there is none.
+// src: points moved by the present pose; dst: their matches; normals: their unit normals, NaN where there is none.
 // All are Float64Array x0, y0, x1, y1, \u2026
 function point_to_plane_step(src, dst, normals) {
   return [0, 0, 0];
@@ -159,7 +159,7 @@ function point_to_plane_step(src, dst, normals) {
         fault: motion([0, 0, 0], 0, "Fewer than three normals give the identity.")
       },
       {
-        name: "Two normals of many",
+        name: "Only two normals",
         arguments: [flat(ROOM), flat(ROOM.map(([x = 0, y = 0]) => [x + 0.1, y])), flat(ROOM.map((_, k) => k < 2 ? [1, 0] : [NaN, NaN]))],
         fault: motion([0, 0, 0], 0, "Pairs without a normal do not count, and fewer than three give the identity.")
       }
@@ -211,12 +211,12 @@ function point_to_plane_step(src, dst, normals) {
     return (result) => {
       const found = numbers(result, expected.length);
       if (found?.every((one, k) => one === expected[k]) === true) return void 0;
-      return `expected the numbers [${expected.join(", ")}], but got ${shown(result)}. ${meaning}`;
+      return `expected the indices [${expected.join(", ")}], but got ${shown(result)}. ${meaning}`;
     };
   }
   var REJECT = {
     name: "keep_pairs",
-    stub: `// The numbers of the pairs that ICP keeps: of n pairs the max(1, \u2308(1 \u2212 trim) n\u2309) shortest, in their order.
+    stub: `// The indices of the pairs that ICP keeps: of n pairs, the max(1, \u2308(1 \u2212 trim) n\u2309) shortest, in order.
 // lengths: Float64Array, m. trim: the share to drop, 0 to 1; 0 in the lap of w16.2.
 function keep_pairs(lengths, trim) {
   return [];
@@ -275,7 +275,7 @@ function keep_pairs(lengths, trim) {
   var LOOP_GATE = {
     name: "gate",
     stub: `// Whether a loop is within the drift of the odometry: {chi2, accepted}.
-// innovation: [x, y, \u03B8], m, m, rad; gap: nodes between the two ends; drift: [\u03C3, \u03C3_\u03B8] in one node, m, rad;
+// innovation: [x, y, \u03B8], m, m, rad; gap: nodes between the two ends; drift: [\u03C3, \u03C3_\u03B8] per node, m, rad;
 // limit: the largest \u03C7\xB2 that is accepted.
 function gate(innovation, gap, drift, limit) {
   return { chi2: 0, accepted: true };
@@ -285,12 +285,12 @@ function gate(innovation, gap, drift, limit) {
       {
         name: "A known innovation",
         arguments: [Float64Array.of(0.045, 0, 0), 1, [...DRIFT], GATE],
-        fault: verdict(1, true, "One standard deviation has \u03C7\xB2 1.")
+        fault: verdict(1, true, "One standard deviation gives \u03C7\xB2 1.")
       },
       {
-        name: "A longer way",
+        name: "A longer path",
         arguments: [Float64Array.of(0.09, 0, 0.024), 4, [...DRIFT], GATE],
-        fault: verdict(2, true, "The variance grows with the gap, the standard deviation with its root.")
+        fault: verdict(2, true, "The variance grows with the gap, the standard deviation with \u221Agap.")
       },
       {
         name: "Mirrored",

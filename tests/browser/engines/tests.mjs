@@ -213,9 +213,9 @@ async function mapsRobot(page) {
     await click(page, inPanel('summary'));
     await ask(page, `(url) => { (${inPanel('input')})().value = url; }`, robot.url);
     await click(page, inPanel('button[type=submit]'));
-    await says(`${scans} scans came`);
+    await says(`${scans} scans arrived`);
     await until(page, `() => { for (const button of document.querySelector('slam-widget').shadowRoot.querySelectorAll('.connection button')) if (button.textContent === 'Stop') { button.click(); return true; } }`);
-    await says(`${scans} scans came, ${scans} are mapped.`);
+    await says(`${scans} scans arrived, ${scans} are mapped.`);
   } finally {
     await robot.close();
   }

@@ -47,7 +47,7 @@ export function draw(story: Building, at: number, surface: Surface, width: numbe
   surface.words(at === 0 ? 'where the wheels put it' : 'the robot', [end[0], end[1] + 1.4 * size], ink, size);
   // The dashed path mostly ends outside the picture: its label is at its last visible point.
   const last = at > 0 ? way(story.wheels).findLast(([x, y]) => x > 5 * size && x < width - 5 * size && y > 2 * size && y < height - 2 * size) : undefined;
-  if (last !== undefined) surface.words('by the wheels', last, 'prediction', size);
+  if (last !== undefined) surface.words('from wheels', last, 'prediction', size);
 }
 
 /** The two estimates around `at`, and its share of the way between them. */

@@ -58,7 +58,7 @@ function agrees(cm: number): boolean {
 }
 
 function agreement(cm: number): string {
-  return agrees(cm) ? `map agrees to ${cm} cm` : `map doubles by ${cm} cm`;
+  return agrees(cm) ? `map agrees to ${cm} cm` : `map disagrees by ${cm} cm`;
 }
 
 /** The card's picture as an SVG, its map in squares of that side. */

@@ -87,7 +87,7 @@ function sentence(facts: Facts): string {
 function remark(facts: Facts): { notice: string; hint: string } {
   const { agrees } = numbers(facts);
   if (agrees === '') return { notice: 'Nothing is seen twice, which scores nothing.', hint: 'Let the robot come back.' };
-  if (!isUnnoticed(facts)) return { notice: `It shows: the ${agrees}, which scores nothing.`, hint: 'Let the robot see no room twice.' };
+  if (!isUnnoticed(facts)) return { notice: `Noticed: the ${agrees}, which scores nothing.`, hint: 'Let the robot see no room twice.' };
   const isHome = metresOff(facts) < HOME_M;
   const change = isHome ? 'rub out doors and corners, so that the walls look the same everywhere' : 'draw longer walls without doors or corners';
   return { notice: `Nothing warns the robot: its ${agrees}, wrong on both passes.`, hint: `Make it worse: ${change}.` };

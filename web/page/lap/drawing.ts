@@ -78,8 +78,8 @@ function drawPathLabels(moment: Moment, surface: Surface, toPixels: Camera, unit
   const side = wheels[1] > robot[1] ? 1 : -1;
   // There may be no room above the wheels' robot.
   const ofWheels = wheels[1] + side * 1.7 * size < size ? 1 : side;
-  surface.words('by the wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
-  surface.words('by the sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
+  surface.words('from wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
+  surface.words('from sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
 }
 
 /** Labels the walls once the way back has some. */

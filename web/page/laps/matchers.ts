@@ -67,7 +67,7 @@ export class MatchersFigure {
   readonly #world = choice('in', WORLDS.map(([name]) => name));
   readonly #radius = slider('Radius of the normals', { min: 1.5, max: 6, step: 0.1, value: 4.2 }, (cells) => `${cells.toFixed(1)} cells`);
   readonly #guesses = MATCHERS.map(([, name]) => slider(
-    `Your guess: loops take off ${name}`,
+    `Your guess: loops lower ${name} by`,
     { min: 0, max: 80, step: 1, value: 0 },
     (share) => (share === 0 ? 'none yet' : `${share}%`),
   ));

@@ -330,7 +330,7 @@ export class MatchFigure {
     const off = `${this.#errorText()} off`;
     const fit = `Its pairs are ${Math.round(100 * rmse)} cm apart`;
     if (this.#room === ROOMS[0] && (ending === 'quarter turn' || ending === 'half turn')) {
-      return `ICP stopped a ${ending} wrong, ${off}. ${fit}. The room is nearly square, so the place looks right at first; the pairs show that it is not.`;
+      return `ICP stopped a ${ending} out, ${off}. ${fit}. The room is nearly square, so the place looks right at first; the pairs show that it is not.`;
     }
     return `ICP stopped after ${counted(poses.length - 1)} in the wrong place, ${off}. ${fit}. Move it closer, and let it try again.`;
   }

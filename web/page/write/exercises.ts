@@ -76,7 +76,7 @@ const WALLS = [-2, -1, 0, 1, 2].flatMap((x) => [[x, 1], [x, -1]]);
 const ALIGN: Exercise = {
   name: 'svd_align',
   stub: `// The motion [x, y, θ] that minimizes Σ ‖R(θ) pₖ + t − qₖ‖².
-// src, dst: Float64Array x0, y0, x1, y1, …; points k of both belong together.
+// src, dst: Float64Array x0, y0, x1, y1, …; their k-th points match.
 function svd_align(src, dst) {
   return [0, 0, 0];
 }
@@ -95,7 +95,7 @@ function svd_align(src, dst) {
   ],
   help: [
     'Subtract both means first. Then only a rotation is left to find, and t follows from the means.',
-    'Of centred pairs sum c = Σ (pₓ q_y − p_y qₓ) and d = Σ (pₓ qₓ + p_y q_y). The cost is one sinusoid in θ.',
+    'For centred pairs, sum c = Σ (pₓ q_y − p_y qₓ) and d = Σ (pₓ qₓ + p_y q_y). The cost is one sinusoid in θ.',
     'θ = Math.atan2(c, d); x and y are q̄ − R(θ) p̄.',
   ],
   solution: `function svd_align(src, dst) {
@@ -151,7 +151,7 @@ const OFF: Motion = [0.02, -0.03, 0.01];
 const PLANE: Exercise = {
   name: 'point_to_plane_step',
   stub: `// One Gauss–Newton step on Σ (nₖ · (pₖ − qₖ))²: the motion [x, y, θ] of the new pose step ∘ pose.
-// src: points moved by the present pose; dst: their matches; normals: unit normals of these, NaN where there is none.
+// src: points moved by the present pose; dst: their matches; normals: their unit normals, NaN where there is none.
 // All are Float64Array x0, y0, x1, y1, …
 function point_to_plane_step(src, dst, normals) {
   return [0, 0, 0];
@@ -168,7 +168,7 @@ function point_to_plane_step(src, dst, normals) {
       fault: motion([0, ACROSS, 0], 1e-9, 'No normal points along the wall, so the ridge allows no step there.') },
     { name: 'No pairs', arguments: [new Float64Array(0), new Float64Array(0), new Float64Array(0)],
       fault: motion([0, 0, 0], 0, 'Fewer than three normals give the identity.') },
-    { name: 'Two normals of many', arguments: [flat(ROOM), flat(ROOM.map(([x = 0, y = 0]) => [x + 0.1, y])), flat(ROOM.map((_, k) => (k < 2 ? [1, 0] : [NaN, NaN])))],
+    { name: 'Only two normals', arguments: [flat(ROOM), flat(ROOM.map(([x = 0, y = 0]) => [x + 0.1, y])), flat(ROOM.map((_, k) => (k < 2 ? [1, 0] : [NaN, NaN])))],
       fault: motion([0, 0, 0], 0, 'Pairs without a normal do not count, and fewer than three give the identity.') },
   ],
   help: [
@@ -219,13 +219,13 @@ function kept(expected: number[], meaning: string): (result: unknown) => string 
   return (result) => {
     const found = numbers(result, expected.length);
     if (found?.every((one, k) => one === expected[k]) === true) return undefined;
-    return `expected the numbers [${expected.join(', ')}], but got ${shown(result)}. ${meaning}`;
+    return `expected the indices [${expected.join(', ')}], but got ${shown(result)}. ${meaning}`;
   };
 }
 
 const REJECT: Exercise = {
   name: 'keep_pairs',
-  stub: `// The numbers of the pairs that ICP keeps: of n pairs the max(1, ⌈(1 − trim) n⌉) shortest, in their order.
+  stub: `// The indices of the pairs that ICP keeps: of n pairs, the max(1, ⌈(1 − trim) n⌉) shortest, in order.
 // lengths: Float64Array, m. trim: the share to drop, 0 to 1; 0 in the lap of w16.2.
 function keep_pairs(lengths, trim) {
   return [];
@@ -276,7 +276,7 @@ const GATE = 7.815;
 const LOOP_GATE: Exercise = {
   name: 'gate',
   stub: `// Whether a loop is within the drift of the odometry: {chi2, accepted}.
-// innovation: [x, y, θ], m, m, rad; gap: nodes between the two ends; drift: [σ, σ_θ] in one node, m, rad;
+// innovation: [x, y, θ], m, m, rad; gap: nodes between the two ends; drift: [σ, σ_θ] per node, m, rad;
 // limit: the largest χ² that is accepted.
 function gate(innovation, gap, drift, limit) {
   return { chi2: 0, accepted: true };
@@ -284,9 +284,9 @@ function gate(innovation, gap, drift, limit) {
 `,
   trials: [
     { name: 'A known innovation', arguments: [Float64Array.of(0.045, 0, 0), 1, [...DRIFT], GATE],
-      fault: verdict(1, true, 'One standard deviation has χ² 1.') },
-    { name: 'A longer way', arguments: [Float64Array.of(0.09, 0, 0.024), 4, [...DRIFT], GATE],
-      fault: verdict(2, true, 'The variance grows with the gap, the standard deviation with its root.') },
+      fault: verdict(1, true, 'One standard deviation gives χ² 1.') },
+    { name: 'A longer path', arguments: [Float64Array.of(0.09, 0, 0.024), 4, [...DRIFT], GATE],
+      fault: verdict(2, true, 'The variance grows with the gap, the standard deviation with √gap.') },
     { name: 'Mirrored', arguments: [Float64Array.of(-0.045, 0.045, -0.012), 1, [...DRIFT], GATE],
       fault: verdict(3, true, 'The sign of an innovation does not matter.') },
     { name: 'Three sigma along a corridor', arguments: [Float64Array.of(3 * 0.045 * 5, 0, 0), 25, [...DRIFT], GATE],

@@ -196,7 +196,7 @@ export class Sandbox {
     } else if (told.missing !== undefined) {
       this.#fail(new NotRun(`There is no function ${told.missing}. Keep its name.`));
     } else if (told.unstarted !== undefined) {
-      this.#fail(new NotRun(`The program of the widgets does not start beside your code (${told.unstarted}). ${AGAIN}`));
+      this.#fail(new NotRun(`The widgets’ program did not start alongside your code (${told.unstarted}). ${AGAIN}`));
     } else if (told.broken !== undefined) {
       this.#fail(new NotRun(told.broken.replace(/^Uncaught /, ''), lineOf(told.line, this.#code)));
     } else if (told.done === true || told.ready === true || told.started === true) {
@@ -229,7 +229,7 @@ function rejected(): NotRun {
 const AGAIN = 'Close other tabs and press the button again, or reload the page.';
 
 function unstarted(patience_ms: number): NotRun {
-  return new NotRun(`The browser has not started your code for ${patience_ms / 1000} s. ${AGAIN}`);
+  return new NotRun(`The browser did not start your code within ${patience_ms / 1000} s. ${AGAIN}`);
 }
 
 function slow(patience_ms: number): NotRun {

@@ -24,7 +24,7 @@ interface DriveReport {
 
 const LOOPBACK = /^(localhost|127(\.\d+){3}|\[::1\])$/;
 const INSECURE =
-  'A browser lets a page that came by https reach only wss:// addresses. Three ways out: serve the robot by wss://, unpack the ' +
+  'A browser lets a page loaded over https reach only wss:// addresses. Three ways out: serve the robot over wss://, unpack the ' +
   'offline zip and open its page, or open this page from http://localhost.';
 
 export class ConnectionPanel {
@@ -57,7 +57,7 @@ export class ConnectionPanel {
     label.append('Address ', this.#address);
     const heading = create('summary');
     heading.textContent = 'Connect to a robot';
-    this.#laserLabel.append('Scans of ', this.#lasers);
+    this.#laserLabel.append('Scans from ', this.#lasers);
     this.#lasers.addEventListener('change', () => host.choose(this.#lasers.value));
     form.append(label, this.#connect, this.#stop, this.#laserLabel, this.#recording, this.#session);
     form.addEventListener('submit', (event) => {
@@ -166,7 +166,7 @@ function sentence(text: string): string {
 }
 
 function wordsOn(came: number, mapped: number, tooFast: number, isDriving: boolean): string {
-  const left = tooFast === 0 ? '' : ` ${tooFast} came faster than this computer maps them and were left out; the recording has them.`;
-  if (mapped === 0 && isDriving) return `${came} scans came. The map starts once odometry and mounting are checked against them: drive on, and turn.${left}`;
-  return `${came} scans came, ${mapped} are mapped.${left}`;
+  const left = tooFast === 0 ? '' : ` ${tooFast} arrived faster than this computer maps them and were left out; the recording has them.`;
+  if (mapped === 0 && isDriving) return `${came} scans arrived. The map starts once odometry and mounting are checked against them. Drive on, and turn.${left}`;
+  return `${came} scans arrived, ${mapped} are mapped.${left}`;
 }

@@ -421,7 +421,7 @@ export class LogMapper {
     }
     const megabytes = Math.ceil(files.reduce((sum, { size }) => sum + size, 0) / 1e6);
     this.#fail(
-      `The program that maps the log stopped again (the file has ${megabytes} MB); ` +
+      `The program that maps the log stopped again (the file is ${megabytes} MB); ` +
         'it may need more memory than the browser allows. Try slam2d run on the command line.',
     );
   }
@@ -453,7 +453,7 @@ export class LogMapper {
   async #sendReference(file: File): Promise<void> {
     const generation = this.#generation;
     if (file.size > MAX_REFERENCE_BYTES) {
-      this.#publish([textDelivery('answer', `${file.name} is larger than a reference of 256 MB.`)]);
+      this.#publish([textDelivery('answer', `${file.name} exceeds the 256 MB limit for a reference.`)]);
       return;
     }
     try {

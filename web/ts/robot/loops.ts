@@ -62,7 +62,7 @@ export class LoopsToLookInto {
     const focused = (this.element.getRootNode() as ShadowRoot).activeElement;
     const held = [...this.#list.querySelectorAll('button')].indexOf(focused as HTMLButtonElement);
     this.#heading.textContent =
-      count === 0 ? 'No loop is in doubt.' : 'Do these scans belong together? The rest of the graph contradicts it.';
+      count === 0 ? 'No loop is in doubt.' : 'Do these scans belong together? The rest of the graph says no.';
     this.#legend.hidden = count === 0;
     this.#list.replaceChildren(...loops.map((loop) => this.#item(loop)));
     this.#more.textContent = count > loops.length ? `and ${count - loops.length} more` : '';
@@ -86,7 +86,7 @@ export class LoopsToLookInto {
       return button;
     };
     const words = create('span');
-    words.textContent = `${ends}: χ² ${loop.chi2.toFixed(0)} of ${loop.gate_chi2.toFixed(0)}`;
+    words.textContent = `${ends}: χ² ${loop.chi2.toFixed(0)} against ${loop.gate_chi2.toFixed(0)}`;
     item.append(show, words, decide('Accept', loop.accept), decide('Reject', loop.reject));
     return item;
   }

@@ -146,7 +146,7 @@ fn at(false_loops: f64) -> Shown {
     let accepted = accepted(&graph(false_loops));
     let [gnc, pairs, gate] = [0, 1, 2].map(|test| counts(&accepted[test]));
     let sentence = format!(
-        "Of {TRUE_LOOPS} true and {false_loops} false loops the gate accepts {} and {}, pairwise consistency {} and {}, GNC {} \
+        "Of {TRUE_LOOPS} true and {false_loops} false loops, the gate accepts {} and {}, pairwise consistency {} and {}, GNC {} \
          and {}.",
         gate[0], gate[1], pairs[0], pairs[1], gnc[0], gnc[1]
     );
@@ -177,7 +177,7 @@ fn picture(accepted: &[Vec<bool>; 3]) -> Panel {
         title: "Which loops each test accepts".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
-        x: Axis::new("number of the loop", 0.4, TRUE_LOOPS as f64 + 10.6),
+        x: Axis::new("loop number", 0.4, TRUE_LOOPS as f64 + 10.6),
         y: Axis {
             max: 4.2,
             ..Axis::from_names("", TESTS.map(str::to_owned))

@@ -102,7 +102,7 @@ fn at(distance_m: f64) -> Shown {
     let [alone, loops] = errors();
     Shown {
         sentence: format!(
-            "Loops take the absolute error from {:.2} to {:.2} m. Over {distance_m:.1} m the relative error goes from {:.3} to \
+            "Loops take the absolute error from {:.2} to {:.2} m. Over {distance_m:.1} m, the relative error goes from {:.3} to \
              {:.3} m.",
             alone.ate_m,
             loops.ate_m,
@@ -138,7 +138,7 @@ fn picture(distance_m: f64) -> Panel {
         title: "The canonical run".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
-        x: Axis::new("distance of a relative error (m)", 0.0, FARTHEST_M),
+        x: Axis::new("distance driven (m)", 0.0, FARTHEST_M),
         y: Axis::new("error (m)", 0.0, 1.1 * math::max(most[0], most[1])),
         layers: vec![
             level(alone, Tone::Prior),

@@ -91,7 +91,7 @@ fn at(gate: f64) -> Shown {
         },
         sentence: format!(
             "Up to {gate:.1}, {passed} of {all} true attempts are accepted, {of_true:.0}%, and {slipped} of {wrong} false ones, \
-             {of_false:.0}%. The difference is {:.0}%; chance has 0, a perfect test 100.",
+             {of_false:.0}%. The difference is {:.0}%; chance scores 0, a perfect test 100.",
             of_true - of_false,
         ),
     }

@@ -76,7 +76,7 @@ fn at(cell_m: f64) -> Shown {
             panels: vec![picture(cell_m, &target, &map), curve(&map, &sweep)],
         },
         sentence: format!(
-            "With cells of {cell_m:.1} m the room has {bells} bells, and half the score is gone {width:.2} m from the truth."
+            "With cells of {cell_m:.1} m, the room has {bells} bells, and half the score is gone {width:.2} m from the truth."
         ),
     }
 }

@@ -115,7 +115,7 @@ fn at(driven_m: f64) -> Shown {
         .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]]);
     let panel = Panel {
         id: "plan",
-        title: format!("One standard deviation, {ENLARGED:.0} times enlarged"),
+        title: format!("One standard deviation, enlarged {ENLARGED:.0} times"),
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x: Axis::new("x (m)", -0.2, 12.2),
@@ -148,7 +148,7 @@ fn at(driven_m: f64) -> Shown {
             panels: vec![panel],
         },
         sentence: format!(
-            "After {driven_m:.1} m the sweep fixes its position to {along:.1} cm along the corridor, and to {across:.1} cm across."
+            "After {driven_m:.1} m, the sweep fixes the position to {along:.1} cm along the corridor, and to {across:.1} cm across."
         ),
     }
 }

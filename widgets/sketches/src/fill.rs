@@ -103,7 +103,7 @@ fn at(place: f64) -> Shown {
     let filled = filled(&order);
     Shown {
         sentence: format!(
-            "Eliminated as number {place}, it fills in {} blocks. The solver’s own order, approximate minimum degree, fills in {}.",
+            "At position {place}, the keyframe fills in {} blocks. The solver’s own order, approximate minimum degree, fills in {}.",
             filled.len(),
             self::filled(&solvers_order()).len()
         ),

@@ -131,7 +131,7 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
         legend: vec![
             LegendEntry::mark("predicted", Tone::Prior, Mark::Plus),
             LegendEntry::mark("true drifts that pass", Tone::Prior, Mark::Dot),
-            LegendEntry::mark("that do not", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("true drifts rejected", Tone::Prediction, Mark::Triangle),
             LegendEntry::line("gate", Tone::Ink, Stroke::Dotted),
             LegendEntry::mark(label, tone, mark),
         ],
@@ -154,7 +154,7 @@ fn ends(gap: usize, config: &LoopConfig) -> Panel {
     let places = |drifts: &[Vector3<f64>]| drifts.iter().map(place).collect();
     Panel {
         id: "ends",
-        title: "Where they end, and the gate".to_owned(),
+        title: "Where drifts end, and the gate".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Equal,
         x: Axis::new("along the path (m)", -REACH_M, REACH_M),

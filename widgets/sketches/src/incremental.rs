@@ -175,7 +175,7 @@ fn at(error_m: f64) -> Shown {
     };
     Shown {
         sentence: format!(
-            "The wheels are {error_m:.2} m off, the climb ends {ending}. The worst pose is {climbed:.2} m out if no earlier pose moves, {pushed:.2} m if the error is sent backwards, and {solved:.2} m in the graph."
+            "The wheels are {error_m:.2} m off; the climb ends {ending}. The worst pose is {climbed:.2} m out if no earlier pose moves, {pushed:.2} m if the error is sent backwards, and {solved:.2} m in the graph."
         ),
         scene: Scene {
             panels: vec![hills(&place, error_m, found_m), map(&paths)],

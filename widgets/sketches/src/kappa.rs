@@ -39,7 +39,7 @@ const MOST_RATIO: f64 = 4.0;
 
 pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "kappa",
-    title: "Errors, in the standard deviations that a registration claims",
+    title: "Errors, in claimed standard deviations",
     slider: Slider {
         label: "κ, points that count as one",
         unit: "",
@@ -145,11 +145,7 @@ fn errors(kappa: f64) -> Panel {
         title: "Error ÷ claimed standard deviation".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
-        x: Axis::new(
-            "along the drive (σ); the ends hold all beyond",
-            -reach,
-            reach,
-        ),
+        x: Axis::new("along the drive (σ); end bins hold the rest", -reach, reach),
         y: Axis::new("registrations", 0.0, HIGHEST),
         layers: vec![
             Layer::line(normal.collect(), Stroke::Dotted, Tone::Ink, 2.0),

@@ -217,7 +217,7 @@ fn at(sweeps: f64) -> Shown {
     let (_, asked) = grown.tree.nearest(QUERY);
     Shown {
         sentence: format!(
-            "{sweeps}, {points} points. The query compares {compared} points, from nine cells. In the tree it compares {asked}, but some leaf is {levels} levels down, where {fewest} would do.",
+            "{sweeps}, {points} points. The query compares {compared} points, from nine cells. The tree compares {asked}, but one leaf is {levels} levels down, where {fewest} would do.",
             sweeps = plural(count, "sweep"),
             points = grown.tree.points.len(),
             compared = compared.len(),

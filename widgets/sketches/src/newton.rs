@@ -95,7 +95,7 @@ fn at(steps: f64) -> Shown {
         sentence: match step.checked_sub(1) {
             None => {
                 format!(
-                    "The guess is {off_cm:.0} cm and {off_deg:.0}° off. Its score is {:.3} a beam.",
+                    "The guess is {off_cm:.0} cm and {off_deg:.0}° off. Its score is {:.3} per beam.",
                     score(0)
                 )
             }
@@ -103,12 +103,12 @@ fn at(steps: f64) -> Shown {
                 let longest = (1..=STEPS).max_by(|a, b| length_cm(*a).total_cmp(&length_cm(*b)));
                 let longest = longest.unwrap_or(step);
                 format!(
-                    "After {step} steps the sweep is {off_cm:.1} cm off. The longest was step {longest}, by {:.1} cm.",
+                    "After {step} steps the sweep is {off_cm:.1} cm off. The longest, step {longest}, was {:.1} cm.",
                     length_cm(longest)
                 )
             }
             Some(before) => format!(
-                "Step {step} is {:.1} cm long and takes the score from {:.3} to {:.3} a beam. The sweep is {off_cm:.1} cm off.",
+                "Step {step} is {:.1} cm long and takes the score from {:.3} to {:.3} per beam. The sweep is {off_cm:.1} cm off.",
                 length_cm(step),
                 score(before),
                 score(step)

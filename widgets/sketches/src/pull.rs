@@ -90,7 +90,7 @@ fn at(drive_m: f64) -> Shown {
         },
         sentence: format!(
             "After {drive_m:.2} m and an exact prediction, the sweep is moved {step_cm:.1} cm along the wall: {back} of {} \
-             arrows point backwards. Point-to-plane moves it by zero.",
+             arrows point backwards. Point-to-plane does not move it.",
             pairs.len()
         ),
     }
@@ -109,7 +109,7 @@ fn wall(drive_m: f64, pairs: &[Pair]) -> Panel {
         .collect();
     Panel {
         id: "wall",
-        title: "The nearest old point of each new one".to_owned(),
+        title: "Each new point’s nearest old point".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("along the wall (m)", -REACH_M, REACH_M + FARTHEST_M),

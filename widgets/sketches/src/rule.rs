@@ -49,7 +49,7 @@ fn at(tie: f64) -> Shown {
     ];
     let fall = |[before, after]: &[Vec<f64>; 2]| fall_percent(before[TIP], after[TIP]);
     let sentence = format!(
-        "Tied at {tie} m, the standard deviation at the tip should fall by {:.0}%. Over {DRIVES} drives the error there falls by \
+        "With a tie at {tie} m, the tip’s standard deviation should fall by {:.0}%. Over {DRIVES} drives the error there falls by \
          {:.0}%. A bias shared by all edges falls by {:.0}%.",
         fall(&predicted),
         fall(&driven),
@@ -79,7 +79,7 @@ fn walk(tie: usize, [before, after]: &[Vec<f64>; 2], driven: &[Vec<f64>; 2]) -> 
     let tied = [tie, EDGES - tie].map(|node| [node as f64, after[node]]);
     Panel {
         id: "walk",
-        title: "Errors that are independent".to_owned(),
+        title: "Independent errors".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("along the path, out and back (m)", 0.0, EDGES as f64),

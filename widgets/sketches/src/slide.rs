@@ -135,8 +135,8 @@ fn picture(wall: &Wall, shift_m: f64) -> Panel {
         legend: vec![
             LegendEntry::mark("wall", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("sweep", Tone::Prior, Mark::Circle),
-            LegendEntry::line("to the point", Tone::Ink, Stroke::Dotted),
-            LegendEntry::line("to the plane", Tone::Posterior, Stroke::Solid),
+            LegendEntry::line("point-to-point", Tone::Ink, Stroke::Dotted),
+            LegendEntry::line("point-to-plane", Tone::Posterior, Stroke::Solid),
         ],
         color_bar: None,
     }

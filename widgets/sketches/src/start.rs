@@ -47,7 +47,7 @@ fn verdict(certificate: &Certificate) -> String {
         "and the certificate confirms it: no poses cost less".to_owned()
     } else {
         format!(
-            "and no certificate: some poses may cost as little as {:.1}",
+            "with no certificate: some poses may cost as little as {:.1}",
             certificate.lower_bound.max(0.0)
         )
     }

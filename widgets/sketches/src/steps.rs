@@ -84,7 +84,7 @@ fn at(ticks: f64) -> Shown {
             panels: vec![changes(ticks), alarm(ticks)],
         },
         sentence: format!(
-            "After {ticks:.0} ticks, each changes a step on average: {}.",
+            "After {ticks:.0} ticks, each matcher changes steps on average: {}.",
             words.join("; ")
         ),
     }

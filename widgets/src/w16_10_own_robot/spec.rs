@@ -71,7 +71,7 @@ params! {
     .default("closed")
     .help("Which loops the map shows: none, the accepted ones, or the rejected ones as well.");
 
-    pub(super) static LOOP: Param<usize> = Param::typed("loop", "loop of the list", MAX_KEYFRAMES)
+    pub(super) static LOOP: Param<usize> = Param::typed("loop", "listed loop", MAX_KEYFRAMES)
         .help("The loop whose evidence is shown; loop 0 fits the graph worst.");
 
     pub(super) static MARKED: Param<usize> = Param::typed("marked", "marked keyframe", MAX_KEYFRAMES)
@@ -130,7 +130,7 @@ params! {
     pub(super) static OPTION: OneOf<&'static str> = one_of!(
         &'static str,
         "option",
-        "of a recording",
+        "what to change",
         RECORDING_OPTIONS,
     )
     .help("What “Take another” changes if a recording offers more than one: the scan topic, the odometry topic, the odometry frame, or the body frame.");
@@ -163,7 +163,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
     name: "Your own robot",
     title: "How far astray do wheels lead a robot?",
-    claim: "What the robot sees again corrects its wheels.",
+    claim: "Revisited places correct the wheels' drift.",
     gesture: "Open a log of your robot, or watch the sample being mapped.",
     awaits: Awaits::Nothing,
     notice: &[
@@ -217,7 +217,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         ButtonSpec::new(
             "add",
             "Close with mark",
-            "Registers the keyframe shown on the map around the marked one, and closes the loop if it passes the tests.",
+            "Registers the keyframe shown against the map around the marked one, and closes the loop if it passes the tests.",
         ),
         ButtonSpec::new(
             "west",

@@ -129,7 +129,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "upside-down",
             label: "Hang the sensor upside down",
-            help: "A mirror image fits perfectly and hides the mistake. The best rotation leaves a cost that gives the mistake away.",
+            help: "A mirror image fits to within the noise and hides the mistake. The best rotation’s cost gives it away.",
             set: &[SHAPE.to("upside-down"), TRIED.to("mirrors")],
             then: &["play"],
         },

@@ -88,7 +88,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "With the exact Jacobian each step cuts the distance by about two powers of ten, until only rounding is left.",
         "With a Jacobian twice as long as it should be, each step goes only halfway. It still ends at the optimum.",
-        "With the approximate Jacobian, the error grows with the square of the contradiction. The solver ends a centimetre out; with the wrong residual, it ends two decimetres out.",
+        "With the approximate Jacobian, the error grows with the square of the contradiction. The solver ends a centimetre out; with the wrong residual, it ends 19 cm out.",
         "The less the measurements contradict each other, the closer to the optimum the wrong residual ends. A test on clean data does not find the mistake.",
     ],
     opening: Opening {

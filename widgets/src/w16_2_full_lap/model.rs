@@ -16,7 +16,7 @@
 //! # Simplified
 //!
 //! Walls are straight, opaque and at rest. A beam has one normal error, and never a second return. Odometry has
-//! independent normal errors in each step, and no slip. The driver follows way points and never reacts to the map.
+//! independent normal errors in each step, and no slip. The driver follows waypoints and never reacts to the map.
 
 mod drawing;
 pub(super) mod floor_plan;

@@ -43,15 +43,15 @@ const MAX_PIECES: f64 = limits::WALLS as f64;
 /// The effect of a press on the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tool {
-    /// Moves a wall, an end, a way point or the start.
+    /// Moves a wall, an end, a waypoint or the start.
     Move,
     /// Draws a wall.
     Wall,
-    /// Places a way point.
+    /// Places a waypoint.
     Way,
     /// Removes the piece under it.
     Remove,
-    /// Sets the robot down, or moves a way point; walls stay.
+    /// Sets the robot down, or moves a waypoint; walls stay.
     Robot,
 }
 
@@ -139,12 +139,12 @@ const FLAT_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "piece-back",
         "Previous piece",
-        "Selects the previous wall, end or way point, as Page Up does.",
+        "Selects the previous wall, end or waypoint, as Page Up does.",
     ),
     ButtonSpec::new(
         "piece-on",
         "Next piece",
-        "Selects the next wall, end or way point, as Page Down does.",
+        "Selects the next wall, end or waypoint, as Page Down does.",
     ),
     ButtonSpec::new(
         "west",
@@ -169,7 +169,7 @@ const FLAT_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "remove",
         "Remove",
-        "Removes the selected wall or way point, as Delete does.",
+        "Removes the selected wall or waypoint, as Delete does.",
     ),
     ButtonSpec::new(
         "add-wall",
@@ -178,13 +178,13 @@ const FLAT_BUTTONS: &[ButtonSpec] = &[
     ),
     ButtonSpec::new(
         "add-way-point",
-        "Add a way point",
-        "Adds a way point after the selected one, or at the end, and selects it.",
+        "Add a waypoint",
+        "Adds a waypoint after the selected one, or at the end, and selects it.",
     ),
     ButtonSpec::new(
         "turn-here",
         "Revisit starts here",
-        "From the selected way point on, the robot revisits known places. The map from there on is compared with the map up to there.",
+        "From the selected waypoint on, the robot revisits known places. The map from there on is compared with the map up to there.",
     ),
     ButtonSpec::new(
         "take-back",
@@ -266,7 +266,7 @@ params! {
             (Some(Tool::Robot), "robot", "robot"),
         ],
     )
-    .help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. Everything snaps to a grid of 5 cm.");
+    .help("What a press on the map does. The hand moves a wall, an end, a waypoint or the robot; the pencil draws a wall; the others place a waypoint after the selected one, remove something, or set the robot down. Everything snaps to a grid of 5 cm.");
 
     pub(super) static PIECE: OneOf<Option<usize>> = one_of!(
         Option<usize>,
@@ -277,7 +277,7 @@ params! {
             (Some(0), "wall", "a wall"),
             (Some(1), "first-end", "its first end"),
             (Some(2), "second-end", "its second end"),
-            (Some(3), "way-point", "a way point"),
+            (Some(3), "way-point", "a waypoint"),
             (Some(4), "start", "the start"),
             (Some(5), "heading", "its heading"),
         ],
@@ -287,10 +287,10 @@ params! {
     pub(super) static PIECE_NUMBER: Param<usize> =
         Param::typed("piece-number", "number of the piece", MAX_PIECES)
             .default(1.0)
-            .help("The number of the selected wall or way point, counted from 1.");
+            .help("The number of the selected wall or waypoint, counted from 1.");
 
     pub(super) static FLAT: Param<String> = Param::text("flat", "your flat as text", MAX_FLAT)
-        .help("The walls, start and way points of your own floor plan, to the centimetre, in the form used in links. Setting it makes that plan the world.");
+        .help("The walls, start and waypoints of your own floor plan, to the centimetre, in the form used in links. Setting it makes that plan the world.");
 
     use NOISE;
     use LOOPS;
@@ -326,7 +326,7 @@ params! {
         "information",
         InformationFrame::NAMED,
     )
-    .help("The frame in which an edge's information is expressed. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end.");
+    .help("The frame in which an edge's information is expressed. For the chapter's figures, it is rotated by a world heading; the exact frame is the frame of the edge's target, its newer end.");
 
     pub(super) static NORMALS: Param<f64> = Param::slider("normals", "radius of the normals", [0.0, 8.0], 0.1)
         .unit("cells")
@@ -476,7 +476,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "noisy",
             label: "Four times the noise",
-            help: "Odometry ends almost 5 m out, the front end holds, and the last loop closes in the last tick.",
+            help: "Odometry ends almost 5 m out, the front end holds, and the last loop closes at the last tick.",
             set: &[NOISE.to(4.0), TICK.to(LAP_TICKS), SHOW.to("all")],
             then: &[],
         },
@@ -585,7 +585,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "hall",
             label: "A round hall",
-            help: "The wall fixes the position and leaves the heading open. With point-to-plane, the robot ends on the far side of the hall, yet the map agrees with itself to three centimetres.",
+            help: "The wall fixes the position but not the heading. With point-to-plane, the robot ends on the far side of the hall, yet the map agrees with itself to three centimetres.",
             set: &[
                 WORLD.to("hall"),
                 MATCHER.to("p2l"),

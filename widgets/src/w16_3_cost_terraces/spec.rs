@@ -66,7 +66,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "terraces",
         label: "Shrink τ to 0.15 m",
-        help: "ICP's bowl shrinks, creases cross the plain around it, and its ball stops in one. NDT's ball rolls home.",
+        help: "ICP's bowl shrinks, creases cross the plain around it, and its ball stops between them. NDT's ball rolls home.",
         set: &[
             ("tau", 0.15),
             ("colours", 1.0),
@@ -136,7 +136,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "own-corridor",
         label: "Match the corridor with itself",
-        help: "The sweep recognizes its own noise and its doors, and the cost is lowest at the truth. A second sweep would not be so sure.",
+        help: "The sweep recognizes its own noise and the doors, and the cost is lowest at the truth. A second sweep would not be so sure.",
         set: &[
             ("scene", 2.0),
             ("tau", 0.6),
@@ -273,12 +273,12 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
     name: "Cost terraces",
     title: "Where does the ball roll home, and where does it stick?",
-    claim: "False minima are in the cost.",
+    claim: "The cost itself has false minima.",
     gesture: "Drag the ball, then let it go.",
     awaits: Awaits::End,
     notice: &[
         "Both reliefs compare the same sweep with the same points; only the measure differs. Dark is low, and the ball rolls into the dark.",
-        "A small τ breaks ICP's bowl into terraces and hollows. The ball rests in the nearest one, however good the solver. The profile beside the relief shows the ball, and the pit it never reached.",
+        "A small τ breaks ICP's bowl into terraces and hollows. The ball rests in the nearest hollow, however good the solver. The profile beside the relief shows the ball, and the pit it never reached.",
         "At each crease a point changes its match, or loses it, so the slope jumps and the height does not. Points about to change light up.",
         "NDT has no such creases, because each point feels the whole bell of its cell. But thin walls make thin bells, so the valley is narrow and the plain around it has dents of its own. Wider cells help.",
         "A wide τ lets ICP reach further than NDT. Neither measure wins everywhere.",

@@ -75,7 +75,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Turn the laser scan with the blue ring, then let it go.",
     awaits: Awaits::End,
     notice: &[
-        "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see the true scores of its poses, all of them lower. As boxes split, the bars fall towards them.",
+        "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see the true scores of its poses, none of them higher. As boxes split, the bars fall towards them.",
         "ICP races from the same start. It finishes first, in whatever minimum it fell into.",
         "A box whose bound is below the best score so far is dropped unseen, and turns the colour of this text. The bound is never too low, so the search is exact.",
         "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind, because the search counts the points that fit nowhere.",

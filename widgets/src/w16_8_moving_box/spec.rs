@@ -80,8 +80,8 @@ params! {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.8",
     name: "The moving box",
-    title: "How far does one moved box pull the robot off?",
-    claim: "It depends on the weight that its pairs keep.",
+    title: "How far off does one moved box pull the robot?",
+    claim: "That depends on the weight its pairs keep.",
     gesture: "Drag the box.",
     awaits: Awaits::Rest,
     notice: &[

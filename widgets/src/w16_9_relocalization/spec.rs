@@ -66,11 +66,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
     name: "Come back tomorrow",
     title: "Where can the robot work out where it is?",
-    claim: "It can where only one place fits its scan.",
+    claim: "It needs a scan that fits only one place.",
     gesture: "Drag the robot anywhere, then let it go.",
     awaits: Awaits::Nothing,
     notice: &[
-        "A ring is a place not yet ruled out; the better it may still fit, the larger it is. Two robots are the two places that fit best.",
+        "A ring is a place not yet ruled out; the better it may still fit, the larger it is. The robots mark the two places that fit best.",
         "Where the mapping robot drove, one scan is enough. In a room it never entered, or in one of two identical rooms, no pose is called reliable until the robot is out of the door.",
         "The wardrobe was moved overnight. The map still shows it in the old place; after another lap it is gone from there.",
     ],

@@ -70,7 +70,7 @@ fn another_log_starts_anywhere_or_at_the_selected_keyframe() {
 fn its_verdicts_are_reported_and_can_be_stepped_through() {
     let mut robot = with_visitor(true);
     let sentence = |robot: &OwnRobot| robot.outcome().sentence;
-    let whole = "The robot of tuesday.log is found at scan 2: of 5 scans 2 are localized, 1 doubtful, 2 lost.";
+    let whole = "The robot of tuesday.log is found at scan 2: of 5 scans, 2 are localized, 1 doubtful, 2 lost.";
     assert!(sentence(&robot).contains(whole), "{}", sentence(&robot));
     assert!(sentence(&robot).contains("At scan 4 it is lost."));
     robot.press("change").unwrap();

@@ -96,7 +96,7 @@ fn without_loops_the_passes_stay_apart_and_the_walls_blurred() {
     assert_promised(
         "open",
         &format!(
-            "end {:.2} m apart instead of {:.2} m, and {} cells are surely occupied instead of {}",
+            "end {:.2} m apart instead of {:.2} m, and {} cells are clearly occupied instead of {}",
             apart(&open),
             apart(&closed),
             sure(&open),

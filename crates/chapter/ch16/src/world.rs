@@ -1,4 +1,4 @@
-//! `--world`: a built-in world, or a file with walls, start and way points.
+//! `--world`: a built-in world, or a file with walls, start and waypoints.
 
 use std::fs;
 use std::path::PathBuf;

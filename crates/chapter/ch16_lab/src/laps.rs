@@ -21,7 +21,7 @@ const WARDROBE_AT: [[f64; 2]; 2] = [[2.9, 5.7], [7.5, 5.7]];
 /// The laps to drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapsConfig {
-    /// The first lap; the next ones start where it ended and follow its way points.
+    /// The first lap; the next ones start where it ended and follow its waypoints.
     pub drive: DriveConfig,
     /// The estimator.
     pub slam: SlamConfig,

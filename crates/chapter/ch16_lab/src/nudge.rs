@@ -18,7 +18,7 @@ pub const CHANGED_M: f64 = 1e-6;
 
 /// The same lap with the x of its start changed by `share` of its value, along the corridor.
 ///
-/// Not across: at its way point the robot turns round by exactly π. Off the line it turns in the other
+/// Not across: at its waypoint the robot turns round by exactly π. Off the line it turns in the other
 /// direction, and every lap is another drive.
 #[must_use]
 pub fn nudged(config: &LapConfig, share: f64) -> LapConfig {

@@ -10,7 +10,7 @@ const MIN_ROWS: usize = 3;
 /// The motion that minimizes `Σ ‖R p + t − q‖²`, by the singular value decomposition of
 /// `W = Σ (p − p̄)(q − q̄)ᵀ = U D Vᵀ`: `R = V diag(1, det(V Uᵀ)) Uᵀ`.
 ///
-/// The determinant keeps reflections out (Umeyama 1991). No pairs give the identity.
+/// The determinant keeps reflections out (Umeyama 1991). Without pairs, the result is the identity.
 ///
 /// # Panics
 /// If the slices differ in length.

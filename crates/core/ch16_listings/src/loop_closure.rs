@@ -12,7 +12,7 @@ use ch16_slam2d::chi_squared::CHAPTER_GATE;
 /// The constants of loop closure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopConfig {
-    /// Candidates lie within this distance in the graph, m.
+    /// Candidates are within this distance in the graph, m.
     pub radius: f64,
     /// Candidates are at least this many nodes older.
     pub min_gap: usize,

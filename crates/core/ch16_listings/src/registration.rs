@@ -94,7 +94,7 @@ pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> Ic
     }
 }
 
-/// Whether pairs measure a pose: there are enough, and no direction is without them, as along a corridor.
+/// Whether pairs measure a pose: there are enough, and none of its directions is free, as one is along a corridor.
 ///
 /// Point to plane uses those with a normal only, and needs twice as many, because a pair measures one number along its
 /// normal, and two without. A direction counts if its information exceeds the ridge of [`point_to_plane_step`], or for

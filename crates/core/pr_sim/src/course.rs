@@ -1,4 +1,4 @@
-//! A course: a world, the robot's start pose, and the way points that it visits.
+//! A course: a world, the robot's start pose, and the waypoints that it visits.
 //!
 //! Built in are the chapter's Apartment, a ring of corridors, and three worlds in which SLAM fails;
 //! [`Course::from_json`] reads others. A course guarantees that the driver, which turns toward the next way
@@ -23,7 +23,7 @@ pub(crate) use file::extent;
 pub mod limits {
     /// Number of walls; a scan casts every ray against every wall within range.
     pub const WALLS: usize = 2000;
-    /// Number of way points; the robot may have to turn around at each.
+    /// Number of waypoints; the robot may have to turn around at each.
     pub const WAY_POINTS: usize = 50;
     /// Largest |coordinate|, m.
     pub const COORDINATE_M: f64 = 100.0;
@@ -35,7 +35,7 @@ pub mod limits {
 
 /// Least distance between the path and a wall, m.
 ///
-/// The driver turns to the next way point within 0.3 m of the present one, so it cuts a corner by less.
+/// The driver turns to the next waypoint within 0.3 m of the present one, so it cuts a corner by less.
 pub const CLEARANCE_M: f64 = 0.3;
 
 /// A world with a path through it.
@@ -50,7 +50,7 @@ pub struct Course {
 impl Course {
     /// Creates a course and checks it.
     ///
-    /// `turn` is the index of the way point, from 0, after which the robot revisits known space.
+    /// `turn` is the index of the waypoint, from 0, after which the robot revisits known space.
     ///
     /// # Errors
     /// If the driver would touch a wall or could not finish, or if a number is out of range.
@@ -115,13 +115,13 @@ impl Course {
         self.start
     }
 
-    /// Way points in metres, world frame, in the order in which they are visited.
+    /// Waypoints in metres, world frame, in the order in which they are visited.
     #[must_use]
     pub fn way_points(&self) -> &[Point2<f64>] {
         &self.way_points
     }
 
-    /// Index of the way point, from 0, after which the robot revisits known space.
+    /// Index of the waypoint, from 0, after which the robot revisits known space.
     #[must_use]
     pub fn turn(&self) -> Option<usize> {
         self.turn
@@ -230,7 +230,7 @@ impl Course {
         Ok(())
     }
 
-    /// The start and every way point.
+    /// The start and every waypoint.
     fn stops(&self) -> impl Iterator<Item = (CoursePoint, Point2<f64>)> {
         let way_points = self.way_points.iter().enumerate();
         core::iter::once((CoursePoint::Start, self.start.position()))

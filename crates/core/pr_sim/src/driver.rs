@@ -1,4 +1,4 @@
-//! The driver: turns toward the next way point by the true pose, then drives to it.
+//! The driver: turns toward the next waypoint by the true pose, then drives to it.
 
 use pr_geom::{Point2, SE2, math, wrap_angle};
 
@@ -7,7 +7,7 @@ use crate::motion::VelocityCommand;
 /// The controller's gains and limits; the default drives the chapter's lap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriverConfig {
-    /// Way points in metres, world frame, visited in order.
+    /// Waypoints in metres, world frame, visited in order.
     pub waypoints: Vec<Point2<f64>>,
     /// Largest forward speed in m/s.
     pub max_speed_mps: f64,
@@ -17,9 +17,9 @@ pub struct DriverConfig {
     pub heading_gain: f64,
     /// Above this heading error (rad) the driver turns on the spot.
     pub turn_in_place_rad: f64,
-    /// Below this distance (m) to the way point the speed falls in proportion.
+    /// Below this distance (m) to the waypoint the speed falls in proportion.
     pub slow_down_m: f64,
-    /// Distance (m) at which a way point counts as reached.
+    /// Distance (m) at which a waypoint counts as reached.
     pub arrival_m: f64,
 }
 
@@ -40,15 +40,15 @@ impl Default for DriverConfig {
 /// The driver's decision in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveStep {
-    /// The command of this tick, still toward the way point that is reached in it.
+    /// The command of this tick, still toward the waypoint that is reached in it.
     pub command: VelocityCommand,
-    /// Index of the way point reached in this tick, if any.
+    /// Index of the waypoint reached in this tick, if any.
     pub reached: Option<usize>,
     /// Whether that is the last one: the lap ends after this tick.
     pub finished: bool,
 }
 
-/// Drives from way point to way point.
+/// Drives from waypoint to waypoint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaypointDriver {
     config: DriverConfig,
@@ -56,7 +56,7 @@ pub struct WaypointDriver {
 }
 
 impl WaypointDriver {
-    /// Creates a driver that starts toward the first way point.
+    /// Creates a driver that starts toward the first waypoint.
     #[must_use]
     pub fn new(config: DriverConfig) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! A floor plan that a user draws: walls, a start and way points, to the centimetre.
+//! A floor plan that a user draws: walls, a start and waypoints, to the centimetre.
 //!
 //! A [`Course`] can be driven; a sketch may be incomplete, because it is drawn wall by wall. Both of its
 //! formats keep whole centimetres and degrees: the JSON of a course ([`Sketch::to_json`]), and a short
@@ -23,7 +23,7 @@ const CM_PER_M: f64 = 100.0;
 /// A point, `[x, y]` in centimetres, world frame.
 pub type PlaceCm = [i32; 2];
 
-/// Walls, start and way points, which need not be a valid course yet.
+/// Walls, start and waypoints, which need not be a valid course yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sketch {
     /// Walls, each from its first end to its second, cm.
@@ -32,9 +32,9 @@ pub struct Sketch {
     pub start_cm: PlaceCm,
     /// Start heading, degrees from 0 to 359; 0 is along x.
     pub heading_deg: i32,
-    /// Way points, in order, cm.
+    /// Waypoints, in order, cm.
     pub way_points_cm: Vec<PlaceCm>,
-    /// Index of the way point, from 0, after which the robot revisits known space.
+    /// Index of the waypoint, from 0, after which the robot revisits known space.
     pub turn: Option<usize>,
 }
 

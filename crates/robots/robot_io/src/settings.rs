@@ -88,7 +88,7 @@ pub const SETTINGS: &[Setting] = &[
     Setting {
         name: "loops.max_window_m",
         unit: "m",
-        about: "radius within which loops are searched",
+        about: "radius of the search for loops",
         field: |config| &mut config.loops.max_window_m,
     },
 ];

@@ -495,7 +495,7 @@ impl Slam {
         Ok(GridMap::new(&image.map_err(SlamError::new_err)?))
     }
 
-    /// Saves the estimator as a session: `Slam.load` and `slam2d run --resume` continue it, `Localizer` localizes on its map.
+    /// Saves the estimator as a session: `Slam.load` and `slam2d run --continue` continue it, `Localizer` localizes on its map.
     ///
     /// path: the file; one that is there is replaced.
     ///

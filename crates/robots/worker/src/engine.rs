@@ -134,7 +134,9 @@ impl<'a> Engine<'a> {
             .any(|end| lower.ends_with(end));
         let work = if !start.is_empty() && (is_graph || GraphFile::begins(start)) {
             if size_bytes > graph_log::MAX_BYTES {
-                return Err(format!("{name} is larger than a pose graph of 256 MB"));
+                return Err(format!(
+                    "{name} is larger than 256 MB, the limit for a pose graph"
+                ));
             }
             let mut bytes = Vec::new();
             source

@@ -69,7 +69,7 @@ fn motion(value: &JsValue) -> Result<[f64; 3], String> {
 /// The pairs, of `count`, that are not among the kept ones.
 fn dropped(value: &JsValue, count: usize) -> Result<Vec<usize>, String> {
     let kept = numbers(value).ok_or_else(|| {
-        "has to return an array of the numbers of the pairs that it keeps".to_owned()
+        "has to return an array of the indices of the pairs that it keeps".to_owned()
     })?;
     let mut is_kept = vec![false; count];
     for number in kept {

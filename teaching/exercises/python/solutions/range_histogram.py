@@ -21,7 +21,7 @@ def chi2_distance(a, b):
 
 
 def detect_by_histogram(sweeps, node, min_gap, max_range, max_distance):
-    """The nodes with scans similar to that of `node`, the most similar first."""
+    """The nodes whose scans are similar to `node`'s, the most similar first."""
     here = range_histogram(sweeps[node], max_range)
     old = range(min(node, max(node + 1 - min_gap, 0)))
     alike = [(chi2_distance(range_histogram(sweeps[k], max_range), here), k) for k in old]

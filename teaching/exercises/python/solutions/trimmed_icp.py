@@ -24,7 +24,7 @@ def associate(source, target, pose, tau, trim):
 
 def icp(source, target, init, *, normals=None, variant="point-to-point", max_distance=0.6, max_iterations=25,
         min_pairs=8, tolerance=1e-4, trim=0.0):
-    """Registers `source` on `target` from the guess `init`."""
+    """Registers `source` against `target` from the guess `init`."""
     is_plane = variant == "point-to-plane"
     pose = np.array(init, dtype=float)
     trace = [pose]

@@ -6,7 +6,7 @@ from given import LoopConfig, VerifiedLoop, icp_information, regularize, submap
 
 
 def verify_loop(poses, sweeps, node, candidate, config=LoopConfig()):
-    """Registers the sweep of `node` on the submap around `candidate`, and tests the result."""
+    """Registers the sweep of `node` against the submap around `candidate`, and tests the result."""
     points, normals = submap(poses, sweeps, candidate, config)
     belief = rs.between(poses[candidate], poses[node])
     tau = max(config.radius / 2, 0.6)

@@ -15,7 +15,7 @@ sys.path[:0] = [os.environ.get("EXERCISES", str(ABOVE)), str(ABOVE)]
 def assert_same_pose(found, expected, tolerance, what="the pose"):
     """Fails if two poses are farther apart than `tolerance`, m and rad added."""
     found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
-    assert found.shape == (3,), f"{what} has to have the shape (3,), not {found.shape}"
+    assert found.shape == (3,), f"{what} must have the shape (3,), not {found.shape}"
     x, y, theta = rs.between(expected, found)
     apart = np.hypot(x, y) + abs(theta)
     assert apart < tolerance, f"{what} is {found}, expected {expected}: {apart:.2e} apart, at most {tolerance:.0e} is allowed"

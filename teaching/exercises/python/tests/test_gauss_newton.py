@@ -1,4 +1,4 @@
-"""4. The graph, by a dense matrix."""
+"""4. The graph, with a dense matrix."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def ring(nodes, seed=6):
 
 
 def core_of(poses, edges, fixed, **settings):
-    """The minimum by the core."""
+    """The core's minimum."""
     graph = rs.PoseGraph()
     for k, pose in enumerate(poses):
         graph.add_node(pose, fixed=k == fixed)
@@ -69,7 +69,7 @@ def test_it_ends_in_the_minimum_of_the_core_whichever_pose_is_held(fixed):
     found, steps = optimize(poses, edges, fixed, 60, 1e-10, np.inf)
     expected = core_of(poses, edges, fixed)
     assert np.array_equal(found[fixed], poses[fixed]), f"the held pose moved to {found[fixed]}"
-    # The chapter's Jacobians lack a factor: they end near the minimum of the exact ones, and χ² tells how near.
+    # The chapter's Jacobians lack a factor, so the solver ends near the exact minimum, and χ² tells how near.
     assert chi2(found, edges) < 1.001 * chi2(expected, edges), f"χ² {chi2(found, edges)}, the core has {chi2(expected, edges)}"
     assert steps < 60, "it does not converge"
 

@@ -55,7 +55,7 @@ def test_it_gives_what_the_core_gives_and_skips_pairs_without_a_normal():
         paired, partners = rs.icp(source, wall, max_distance=0.4, max_iterations=0).pairs.T
         normals = rs.normals(wall)[partners]
         corners += np.isnan(normals[:, 0]).sum()
-        # 1e-9: the core adds the same terms in another order.
+        # 1e-9: the core adds terms in a different order.
         assert_same_pose(point_to_plane_step(source[paired], wall[partners], normals), core.trace[1], 1e-9)
     assert corners > 20, "points at the corners have no normal"
 

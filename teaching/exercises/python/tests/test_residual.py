@@ -11,7 +11,7 @@ def random_poses(seed, count):
 
 def assert_near(found, expected, tolerance, what):
     found, expected = np.asarray(found), np.asarray(expected)
-    assert found.shape == expected.shape, f"{what} has to have the shape {expected.shape}, not {found.shape}"
+    assert found.shape == expected.shape, f"{what} must have the shape {expected.shape}, not {found.shape}"
     assert np.abs(found - expected).max() < tolerance, f"{what} is\n{found}, expected\n{expected}"
 
 

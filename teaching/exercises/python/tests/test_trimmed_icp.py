@@ -35,7 +35,7 @@ def test_without_trimming_every_registration_ends_where_the_core_ends(clouds, va
         found = icp(source, target, guess, normals=rs.normals(target), variant=variant, max_distance=tau,
                     max_iterations=limit)
         what = f"{variant} from {np.round(guess, 3)}, τ = {tau} m"
-        # 1e-9: the core adds the same terms in another order.
+        # 1e-9: the core adds terms in a different order.
         assert_same_pose(found.pose, core.pose, 1e-9, f"{what}: the pose")
         assert len(found.trace) == core.iterations + 1, f"{what}: {len(found.trace)} poses, expected {core.iterations + 1}"
         assert np.allclose(found.trace[0], guess) and np.allclose(found.trace[-1], found.pose), f"{what}: the trace"
@@ -77,7 +77,7 @@ def test_the_longest_pairs_go(trim, share):
     squares = np.min(np.sum((moved[:, None] - target[None]) ** 2, axis=2), axis=1)
     squares = np.sort(squares[squares < 0.49])
     kept = int(np.ceil(share * len(squares)))
-    assert found.inliers == kept, f"{found.inliers} pairs are kept of {len(squares)}, expected {kept}"
+    assert found.inliers == kept, f"{found.inliers} of {len(squares)} pairs are kept, expected {kept}"
     assert found.rmse == pytest.approx(np.sqrt(squares[:kept].mean()), abs=1e-12), "the rmse"
     at_the_guess = icp(source, target, np.zeros(3), max_distance=0.7, max_iterations=0, trim=trim)
     assert at_the_guess.inliers == int(np.ceil(share * len(source))), "the first pairs are trimmed as well"

@@ -49,7 +49,7 @@ pub fn optimize_once(graph: &mut PoseGraph, huber: f64) -> f64 {
     largest
 }
 
-/// Steps until the largest correction is below `tolerance` or NaN; returns their number.
+/// Steps until the largest correction is below `tolerance` or NaN; returns how many.
 pub fn optimize(graph: &mut PoseGraph, max_iters: usize, tolerance: f64, huber: f64) -> usize {
     for step in 1..=max_iters {
         let largest = optimize_once(graph, huber);

@@ -23,7 +23,7 @@ pub fn chi2_distance(a: &[f64; BINS], b: &[f64; BINS]) -> f64 {
     0.5 * terms.map(|(a, b)| (a - b).powi(2) / (a + b)).sum::<f64>()
 }
 
-/// The nodes with scans similar to that of `node`, the most similar first.
+/// The nodes whose scans are similar to `node`'s, the most similar first.
 #[must_use]
 pub fn detect_by_histogram(
     sweeps: &[PointCloud],

@@ -67,7 +67,7 @@ fn map(own: &OwnRobot) -> Panel {
     Panel {
         id: panel::MAP,
         title: match robot.progress.stage {
-            Stage::Empty => "A log of your robot becomes a map".to_owned(),
+            Stage::Empty => "Your robot’s log becomes a map".to_owned(),
             _ => format!("Map of {}", short(&robot.name)),
         },
         weight: Weight::Main,
@@ -95,7 +95,7 @@ fn legend(own: &OwnRobot, has_wheels: bool) -> Vec<LegendEntry> {
         return legend;
     }
     legend.push(if has_wheels {
-        LegendEntry::line("by the wheels alone", Tone::Prediction, Stroke::Dashed)
+        LegendEntry::line("wheels alone", Tone::Prediction, Stroke::Dashed)
     } else {
         LegendEntry::mark("keyframe shown", Tone::Posterior, Mark::Square)
     });
@@ -133,7 +133,7 @@ fn legend(own: &OwnRobot, has_wheels: bool) -> Vec<LegendEntry> {
         ));
     }
     if own.link().is_some() {
-        let chosen = LegendEntry::line("loop of the list", Tone::Series(1), Stroke::Solid);
+        let chosen = LegendEntry::line("listed loop", Tone::Series(1), Stroke::Solid);
         legend.push(chosen);
     }
     if own.place().is_some() {

@@ -93,7 +93,7 @@ fn sentences(id: &'static str, title: &str, lines: &[String]) -> Option<Table> {
         .collect();
     let more = lines.len().saturating_sub(SHOWN_SENTENCES);
     if more > 0 {
-        rows.push(vec![format!("and {more} more, which the report has")]);
+        rows.push(vec![format!("and {more} more in the report")]);
     }
     (!rows.is_empty()).then(|| Table {
         id,

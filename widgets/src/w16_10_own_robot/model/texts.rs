@@ -161,7 +161,7 @@ fn visitor(own: &OwnRobot) -> String {
         String::new()
     };
     format!(
-        " The robot of {name} {first}{done}: of {scans} scans {} are localized, {doubtful} doubtful, {lost} lost. At scan {} it is {}{at}.",
+        " The robot of {name} {first}{done}: of {scans} scans, {} are localized, {doubtful} doubtful, {lost} lost. At scan {} it is {}{at}.",
         other.localized(),
         shown.scan,
         shown.state.name()
@@ -313,7 +313,7 @@ pub fn summary(own: &OwnRobot) -> String {
     // After a step to this loop the result describes it.
     let link = link.filter(|link| *link != robot.answer);
     format!(
-        "A map with the path of the robot. Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°.{}",
+        "A map with the robot’s path. Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°.{}",
         theta.to_degrees(),
         link.map_or_else(String::new, |link| format!(" {link}"))
     )

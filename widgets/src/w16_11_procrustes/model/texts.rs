@@ -68,7 +68,7 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
         standing,
         verdict: verdict(winner).to_owned(),
         sentence: format!(
-            "turned as well as they can be, the corners miss their targets by {:.2} m (rms); mirrored, by {:.2} m. {consequence}",
+            "with the best rotation, the points miss their targets by {:.2} m (rms); mirrored, by {:.2} m. {consequence}",
             rms_m(Handedness::Turn),
             rms_m(Handedness::Mirror),
         ),
@@ -117,7 +117,7 @@ pub fn summary(trace: &ProcrustesTrace) -> String {
     let targets = targets.map(|(k, p)| format!("{} at x {:.2} m, y {:.2} m", k + 1, p.x, p.y));
     let targets: Vec<_> = targets.collect();
     format!(
-        "{} pairs of points. Targets: {}. It tries {}, now at {:.0}°, with a trace of {:.3} m².",
+        "{} pairs of points. Targets: {}. Trying {}, now at {:.0}°, with a trace of {:.3} m².",
         trace.pairs.len(),
         targets.join("; "),
         plural(trace.tried()),

@@ -213,7 +213,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
         }
     } else {
         Axis::new(
-            "power of ten of χ² above it",
+            "power of ten of the excess χ²",
             LOWEST_POWER - 0.5,
             highest.ceil() + 0.5,
         )

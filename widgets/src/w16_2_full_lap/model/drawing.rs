@@ -178,7 +178,7 @@ impl FullLap {
 
     fn nudge(&mut self, by: [i32; 2]) {
         let Some(piece) = self.piece() else {
-            self.reject("nothing is selected: select a wall, an end or a way point first");
+            self.reject("nothing is selected: select a wall, an end or a waypoint first");
             return;
         };
         match piece.nudged(&self.floor_plan.sketch, by) {
@@ -189,7 +189,7 @@ impl FullLap {
 
     fn remove_piece(&mut self) {
         let Some(piece) = self.piece() else {
-            self.reject("nothing is selected: select a wall or a way point first");
+            self.reject("nothing is selected: select a wall or a waypoint first");
             return;
         };
         match piece.removed(&self.floor_plan.sketch) {
@@ -219,11 +219,11 @@ impl FullLap {
         }
     }
 
-    /// Revisits start from the selected way point; if they do already, the mark is removed.
+    /// Revisits start from the selected waypoint; if they do already, the mark is removed.
     fn mark_revisit_start(&mut self) {
         let Some(index) = self.chosen_way_point() else {
             self.reject(
-                "no way point is selected: select where the robot starts to revisit known places",
+                "no waypoint is selected: select where the robot starts to revisit known places",
             );
             return;
         };
@@ -340,7 +340,7 @@ impl FullLap {
     fn begin_stroke(&mut self, handle: Handle, at: [f64; 2], held: Option<PlanElement>) {
         self.floor_plan.frame = Some(picture::map_bounds(&self.moment()));
         self.floor_plan.note = None;
-        // A way point is inserted after the selected one.
+        // A waypoint is inserted after the selected one.
         let piece = match handle.id {
             PLACE => self.piece(),
             _ => held,

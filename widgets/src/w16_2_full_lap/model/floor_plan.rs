@@ -19,7 +19,7 @@ const MAX_UNDO: usize = 200;
 /// Length of a wall added by a button, cm.
 const NEW_WALL_CM: i32 = 100;
 
-/// Distance of a way point added by a button from the one before, cm.
+/// Distance of a waypoint added by a button from the one before, cm.
 const NEW_WAY_POINT_CM: i32 = 50;
 
 /// A world in the undo history.
@@ -139,7 +139,7 @@ pub fn add_wall(sketch: &mut Sketch, wall: [PlaceCm; 2]) -> Result<usize, String
     Ok(sketch.walls_cm.len() - 1)
 }
 
-/// Inserts a way point after another, or at the end. Returns its index, or why it is impossible.
+/// Inserts a waypoint after another, or at the end. Returns its index, or why it is impossible.
 pub fn add_way_point(
     sketch: &mut Sketch,
     behind: Option<usize>,
@@ -149,7 +149,7 @@ pub fn add_way_point(
     if count >= limits::WAY_POINTS {
         let most = limits::WAY_POINTS;
         return Err(format!(
-            "a path has at most {most} way points: remove one before you place another"
+            "a path has at most {most} waypoints: remove one before you place another"
         ));
     }
     let index = behind.map_or(count, |behind| (behind + 1).min(count));
@@ -165,7 +165,7 @@ pub fn new_wall(sketch: &Sketch) -> [PlaceCm; 2] {
     [moved(middle, [-half, 0]), moved(middle, [half, 0])]
 }
 
-/// Position of a way point added by a button: halfway to the next, or a little beyond the last.
+/// Position of a waypoint added by a button: halfway to the next, or a little beyond the last.
 pub fn new_way_point(sketch: &Sketch, behind: Option<usize>) -> PlaceCm {
     let points = &sketch.way_points_cm;
     let before = behind.or(points.len().checked_sub(1));

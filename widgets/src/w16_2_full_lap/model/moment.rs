@@ -14,7 +14,7 @@ use crate::w16_2_full_lap::spec::{Layers, Tool};
 /// The drawing of the reader's own flat, or of a world that is being edited.
 #[derive(Clone, Copy)]
 pub struct Drawn<'a> {
-    /// Walls, start and way points.
+    /// Walls, start and waypoints.
     pub sketch: &'a Sketch,
     /// The selected tool.
     pub tool: Option<Tool>,

@@ -1,4 +1,4 @@
-//! A piece of a flat: a wall, one of its ends, a way point, the start.
+//! A piece of a flat: a wall, one of its ends, a waypoint, the start.
 
 use pr_geom::math;
 use pr_sim::Sketch;
@@ -24,7 +24,7 @@ pub enum PlanElement {
     FirstEnd(usize),
     /// Its second end.
     SecondEnd(usize),
-    /// A way point.
+    /// A waypoint.
     WayPoint(usize),
     /// The position of the start.
     Start,
@@ -80,7 +80,7 @@ impl PlanElement {
         }
     }
 
-    /// Index of the wall or the way point, from 0.
+    /// Index of the wall or the waypoint, from 0.
     pub fn index(self) -> usize {
         match self {
             Self::Wall(index)

@@ -287,9 +287,15 @@ pub fn edges(moment: &LapState) -> Table {
             ("to node", &|(edge, _)| edge.to.into()),
             ("kind", &|(edge, _)| kind(edge).into()),
             ("χ²", &|(_, strain)| strain.chi2.into()),
-            ("left ahead (m)", &|(_, strain)| strain.residual.x.into()),
-            ("left aside (m)", &|(_, strain)| strain.residual.y.into()),
-            ("left turn (rad)", &|(_, strain)| strain.residual.z.into()),
+            ("residual ahead (m)", &|(_, strain)| {
+                strain.residual.x.into()
+            }),
+            ("residual aside (m)", &|(_, strain)| {
+                strain.residual.y.into()
+            }),
+            ("residual turn (rad)", &|(_, strain)| {
+                strain.residual.z.into()
+            }),
         ],
     )
 }

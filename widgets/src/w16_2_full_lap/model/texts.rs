@@ -62,7 +62,7 @@ pub fn outcome(moment: &LapState, rejected: Option<&OwnLoopError>) -> Outcome {
     };
     let (runs, tick) = (moment.runs, moment.tick);
     let sentence = match runs.driver {
-        Some(yours) => format!("by your {yours}, {sentence}"),
+        Some(yours) => format!("with your {yours}, {sentence}"),
         None => sentence,
     };
     let mut facts = moment_facts(runs, tick);
@@ -196,7 +196,7 @@ fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
         Fact::new("gate_chi2", "gate χ²", runs.gate_chi2(), "", 3),
         Fact::count(
             "line",
-            "last line of the loop that ran",
+            "last algorithm line that ran",
             last_line(runs, tick),
         ),
     ]

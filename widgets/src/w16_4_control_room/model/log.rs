@@ -48,7 +48,7 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
             say(
                 "driver",
                 at_work::PREDICT,
-                format!("way point {} reached", way_point + 1),
+                format!("waypoint {} reached", way_point + 1),
             );
         }
         if !report.registration.accepted {
@@ -62,7 +62,7 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
             );
         }
         if let Some(node) = report.new_keyframe {
-            say("back end", at_work::KEYFRAME, format!("keyframe {node}"));
+            say("front end", at_work::KEYFRAME, format!("keyframe {node}"));
         }
         if let Some(attempt) = &report.loop_attempt {
             events.extend(loop_events(&record.lap, attempt));

@@ -160,7 +160,7 @@ fn facts(window: &WholeWindow) -> Vec<Fact> {
             3,
         ),
         Fact::count("scored", "scores computed", counts.scored() as f64),
-        Fact::count("window", "poses of the window", counts.window as f64),
+        Fact::count("window", "poses in the window", counts.window as f64),
         Fact::new(
             "fewer",
             "times fewer",

@@ -39,7 +39,7 @@ pub fn verdict(been: &PlaceRecognition) -> &'static str {
 pub fn outcome(been: &PlaceRecognition) -> Outcome {
     let sentence = match grade(been) {
         // As long as the text that follows, so that the page below does not move.
-        None => "The lap is driven, and its keyframes are compared pair by pair: which show the same place, according to nearness, range histograms and Scan Context. Then every threshold is graded against the truth, beside a guess and a perfect detector."
+        None => "The lap is driven, and its keyframes are compared pair by pair: which show the same place, according to nearness, range histograms and Scan Context. Then every threshold is graded against the truth, alongside a guess and a perfect detector."
             .to_owned(),
         Some((places, grade)) => {
             let called = format!(
@@ -166,21 +166,21 @@ fn facts(been: &PlaceRecognition) -> Vec<Fact> {
         ),
         Fact::new(
             "pair_histogram",
-            "the pair by ranges",
+            "the pair: range distance",
             number(distances.map(|pair| pair.distances[1])),
             "",
             3,
         ),
         Fact::new(
             "pair_context",
-            "the pair by Scan Context",
+            "the pair: context distance",
             number(distances.map(|pair| pair.distances[2])),
             "",
             3,
         ),
         Fact::new(
             "pair_turn_deg",
-            "the pair's turn by Scan Context",
+            "the pair: Scan Context rotation",
             number(turn.map(f64::to_degrees)),
             "°",
             0,

@@ -215,7 +215,10 @@ fn bias(moving: &MovingBox) -> Panel {
     )];
     if moving.is_before() {
         let middle = [0.5 * MAX_SHARE, 0.5 * y.max];
-        layers.push(Layer::question(middle, "which is pulled off, and how far?"));
+        layers.push(Layer::question(
+            middle,
+            "which is pulled away, and how far?",
+        ));
     } else {
         for (k, line) in lines.into_iter().enumerate() {
             layers.push(Layer::points(line.clone(), MARKS[k], TONES[k], 3.0));

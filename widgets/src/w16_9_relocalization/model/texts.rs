@@ -70,7 +70,7 @@ pub fn verdict(ending: Ending) -> &'static str {
 pub fn outcome(back: &Relocalization) -> Outcome {
     let ending = so_far(back);
     let sentence = match (ending, back.finished()) {
-        (Ending::Unknown, _) => "The robot is switched on, and not told where. It compares what it sees with the whole saved map. Each ring is a candidate place, and rings that cannot win disappear.".to_owned(),
+        (Ending::Unknown, _) => "The robot is switched on, but not told where. It compares what it sees with the whole saved map. Each ring is a candidate place, and rings that cannot win disappear.".to_owned(),
         (Ending::Found, Some((_, run))) => found_words(run),
         (Ending::WrongPose, _) => "The robot is localized at a wrong pose, and drives on. It takes only a place that looks the same, and no later scan to contradict it.".to_owned(),
         (Ending::Ambiguous, Some((_, run))) => format!(

@@ -70,7 +70,7 @@ pub struct BuildingPlan {
     pub opaque: World,
     /// Glass, which beams pass unless they meet it almost head-on.
     pub glass: World,
-    /// Way points, joined by straight lines, m.
+    /// Waypoints, joined by straight lines, m.
     pub path: Vec<Point2<f64>>,
 }
 

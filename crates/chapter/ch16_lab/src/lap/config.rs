@@ -37,11 +37,11 @@ pub struct DriveConfig {
     pub world: Arc<World>,
     /// True pose at the start, world frame.
     pub start: SE2,
-    /// Index of the way point after which the robot revisits known locations.
+    /// Index of the waypoint after which the robot revisits known locations.
     pub turn: Option<usize>,
     /// Duration of a tick in seconds.
     pub dt_s: f64,
-    /// Way points and controller.
+    /// Waypoints and controller.
     pub driver: DriverConfig,
     /// Wheel odometry at noise factor 1.
     pub odometry_noise: VelocityNoise,

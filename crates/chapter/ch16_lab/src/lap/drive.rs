@@ -39,7 +39,7 @@ pub struct DriveTick {
     pub odometry: SE2,
     /// Odometry composed from the start, world frame.
     pub dead_reckoning: SE2,
-    /// Way point reached in this tick.
+    /// Waypoint reached in this tick.
     pub reached: Option<usize>,
     /// The sweep taken at `truth`.
     pub sweep: SimulatedSweep,
@@ -56,7 +56,7 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Simulates the drive until its last way point is reached.
+    /// Simulates the drive until its last waypoint is reached.
     #[must_use]
     pub fn simulate(config: &DriveConfig) -> Self {
         let mut simulation = DriveSimulation::new(config.clone());

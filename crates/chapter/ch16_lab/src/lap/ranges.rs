@@ -52,7 +52,7 @@ macro_rules! count {
     };
 }
 
-/// Every number of the configuration except these: the seed, which is unrestricted; way points and start,
+/// Every number of the configuration except these: the seed, which is unrestricted; waypoints and start,
 /// which lie in free space; the six α, which are at least 0; the settings of matchers; guess noise and
 /// extrapolation for frames without odometry, which a drive does not have; and what only serves recorded logs
 /// and is off: the numbers for robots and the least score of a loop.

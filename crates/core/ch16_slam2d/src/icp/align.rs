@@ -28,7 +28,7 @@ pub struct RigidAlignment {
 ///
 /// Equals the solution by the singular value decomposition of `W = Σ (p_k − p̄)(q_k − q̄)ᵀ`, without
 /// reflections; in the plane it has a closed form, see [`closed_form`], which also returns whether the pairs measure
-/// the rotation: coincident points do not, and keep the heading. No pairs give the identity.
+/// the rotation: coincident points do not, and keep the heading. Without pairs, the result is the identity.
 ///
 /// Source: Arun, Huang & Blostein 1987.
 ///

@@ -20,7 +20,7 @@ pub enum GateModel {
 /// Detection, verification and gating of loops; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopConfig {
-    /// Candidates lie within this distance of the new node in the graph, m.
+    /// Candidates are within this distance of the new node in the graph, m.
     pub radius_m: f64,
     /// Candidates are at least this many nodes older.
     pub min_gap_nodes: usize,

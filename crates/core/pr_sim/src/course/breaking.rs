@@ -21,7 +21,7 @@ const MIDDLE_M: f64 = 0.8;
 const HALL_M: f64 = 3.5;
 const HALL_WAY_M: f64 = 2.2;
 
-/// Number of walls of the hall, and of way points of one round.
+/// Number of walls of the hall, and of waypoints of one round.
 const HALL_WALLS: u16 = 36;
 const HALL_ROUND: u16 = 8;
 

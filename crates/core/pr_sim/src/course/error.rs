@@ -12,7 +12,7 @@ use crate::world::WorldRect;
 pub enum CoursePoint {
     /// The start pose.
     Start,
-    /// A way point.
+    /// A waypoint.
     WayPoint(usize),
     /// A wall.
     Wall(usize),
@@ -22,7 +22,7 @@ impl fmt::Display for CoursePoint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Start => formatter.write_str("the start"),
-            Self::WayPoint(number) => write!(formatter, "way point {number}"),
+            Self::WayPoint(number) => write!(formatter, "waypoint {number}"),
             Self::Wall(number) => write!(formatter, "wall {number}"),
         }
     }
@@ -73,29 +73,29 @@ pub enum CourseError {
         /// The number of the wall.
         wall: usize,
     },
-    /// There are no way points.
-    #[error("way_points_m is empty: give it at least one way point as [x, y]")]
+    /// There are no waypoints.
+    #[error("way_points_m is empty: give it at least one waypoint as [x, y]")]
     NoWayPoints,
-    /// There are too many way points.
-    #[error("way_points_m has {count} way points, but at most {limit} are allowed: leave some out")]
+    /// There are too many waypoints.
+    #[error("way_points_m has {count} waypoints, but at most {limit} are allowed: leave some out")]
     TooManyWayPoints {
         /// Their number.
         count: usize,
         /// Their largest number.
         limit: usize,
     },
-    /// The turn is not a way point.
-    #[error("turn_at is {turn}, but there are {count} way points: name one of them, from 1")]
+    /// The turn is not a waypoint.
+    #[error("turn_at is {turn}, but there are {count} waypoints: name one of them, from 1")]
     NoSuchTurn {
         /// The given value.
         turn: usize,
-        /// The number of way points.
+        /// The number of waypoints.
         count: usize,
     },
     /// A coordinate is not finite or too large.
     #[error("{place} is more than {limit_m} m from the origin: give coordinates in metres near it")]
     TooFar {
-        /// The start, way point or wall.
+        /// The start, waypoint or wall.
         place: CoursePoint,
         /// The largest distance along an axis, m.
         limit_m: f64,
@@ -103,32 +103,32 @@ pub enum CourseError {
     /// The heading is not an angle in degrees.
     #[error("heading_deg of the start is not between -360 and 360: give it in degrees")]
     NoHeading,
-    /// The start or a way point is outside of all walls.
+    /// The start or a waypoint is outside of all walls.
     #[error(
         "{place} is outside the walls, which reach from ({}, {}) to ({}, {}) m: move it inside",
         bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y
     )]
     Outside {
-        /// The start, way point or wall.
+        /// The start, waypoint or wall.
         place: CoursePoint,
         /// The bounds of the walls.
         bounds: WorldRect,
     },
-    /// The start or a way point is too close to a wall.
+    /// The start or a waypoint is too close to a wall.
     #[error(
         "{place} is {distance_m:.2} m from wall {wall}: keep it {CLEARANCE_M} m from every wall"
     )]
     AtWall {
-        /// The start, way point or wall.
+        /// The start, waypoint or wall.
         place: CoursePoint,
         /// The number of the wall.
         wall: usize,
         /// Its distance from the wall, m.
         distance_m: f64,
     },
-    /// The straight segment between two way points is too close to a wall.
+    /// The straight segment between two waypoints is too close to a wall.
     #[error(
-        "the straight line from {from} to {to} comes within {distance_m:.2} m of wall {wall}: lead it around with way points, {CLEARANCE_M} m from every wall"
+        "the straight line from {from} to {to} comes within {distance_m:.2} m of wall {wall}: lead it around with waypoints, {CLEARANCE_M} m from every wall"
     )]
     Blocked {
         /// Its start.
@@ -142,7 +142,7 @@ pub enum CourseError {
     },
     /// The path is too long.
     #[error(
-        "the path is {length_m:.0} m long, but at most {limit_m} m are allowed: leave way points out"
+        "the path is {length_m:.0} m long, but at most {limit_m} m are allowed: leave waypoints out"
     )]
     TooLong {
         /// The path length, m.

@@ -178,19 +178,19 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
         (
             "[7, 7]",
             "[-1e4, 0]",
-            "way point 2 is more than 100 m from the origin",
+            "waypoint 2 is more than 100 m from the origin",
             far,
         ),
         (
             "[7, 7]",
             "[9, 7]",
-            "way point 2 is outside the walls, which reach from (0, 0) to (8, 8) m",
+            "waypoint 2 is outside the walls, which reach from (0, 0) to (8, 8) m",
             "move it inside",
         ),
         (
             "[7, 7]",
             "[4, 4.1]",
-            "way point 2 is 0.10 m from wall 5",
+            "waypoint 2 is 0.10 m from wall 5",
             "0.3 m from every wall",
         ),
         (
@@ -202,13 +202,13 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
         (
             "[7, 1], [7, 7]",
             "[4, 3], [4, 5]",
-            "the straight line from way point 1 to way point 2 comes within 0.00 m of wall 5",
+            "the straight line from waypoint 1 to waypoint 2 comes within 0.00 m of wall 5",
             "0.3 m from every wall",
         ),
         (
             "[7, 1]",
             "[7, 7]",
-            "the straight line from the start to way point 1 comes within 0.00 m of wall 5",
+            "the straight line from the start to waypoint 1 comes within 0.00 m of wall 5",
             "every wall",
         ),
         (
@@ -220,13 +220,13 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
         (
             "\"turn_at\": 4",
             "\"turn_at\": 5",
-            "turn_at is 5, but there are 4 way points",
+            "turn_at is 5, but there are 4 waypoints",
             "from 1",
         ),
         (
             "\"turn_at\": 4",
             "\"turn_at\": 0",
-            "turn_at is 0, but there are 4 way points",
+            "turn_at is 0, but there are 4 waypoints",
             "from 1",
         ),
     ] {
@@ -255,15 +255,12 @@ fn what_is_too_much_is_rejected_with_its_limit() {
     );
     assert_eq!(
         with(walls.clone(), way.repeat(9)),
-        Err(
-            "way_points_m has 54 way points, but at most 50 are allowed: leave some out".to_owned()
-        )
+        Err("way_points_m has 54 waypoints, but at most 50 are allowed: leave some out".to_owned())
     );
     assert_eq!(
         with(walls, way[..5].repeat(6)),
         Err(
-            "the path is 218 m long, but at most 200 m are allowed: leave way points out"
-                .to_owned()
+            "the path is 218 m long, but at most 200 m are allowed: leave waypoints out".to_owned()
         )
     );
     assert_eq!(
@@ -346,7 +343,7 @@ fn the_ring_is_a_cycle_and_the_apartment_is_none() {
 }
 
 proptest! {
-    /// Three walls in a room and way points anywhere: whatever is accepted can be driven.
+    /// Three walls in a room and waypoints anywhere: whatever is accepted can be driven.
     #[test]
     fn an_accepted_course_is_driven_to_its_end_without_touching_a_wall(
         walls in prop::collection::vec((2.5..7.5, 2.5..7.5, -2.5..2.5, -2.5..2.5), 3),
@@ -374,7 +371,7 @@ proptest! {
 
 #[test]
 fn the_longest_drive_that_is_accepted_ends() {
-    // 50 way points and 200 m: back and forth, with a turn around at each.
+    // 50 waypoints and 200 m: back and forth, with a turn around at each.
     let bounds = WorldRect {
         min: Point2::new(0.0, 0.0),
         max: Point2::new(10.0, 4.0),

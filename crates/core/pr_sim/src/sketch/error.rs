@@ -16,7 +16,7 @@ pub enum SketchError {
     Newer,
     /// It exceeds the limits.
     #[error(
-        "the flat has more than {walls} walls or {way_points} way points, or one more than {coordinate_m} m from the origin: leave some out",
+        "the flat has more than {walls} walls or {way_points} waypoints, or one more than {coordinate_m} m from the origin: leave some out",
         walls = super::limits::WALLS,
         way_points = super::limits::WAY_POINTS,
         coordinate_m = super::limits::COORDINATE_M

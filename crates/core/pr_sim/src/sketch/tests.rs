@@ -71,7 +71,7 @@ fn huge_counts_far_places_and_newer_versions_are_rejected_by_name() {
     assert_eq!(rejection(&[1, 0, 0, 10_001, 0]), SketchError::TooLarge);
     for (numbers, what) in [
         (&[1, 0, 360, 0, 0, 0, 0][..], "a heading beyond a turn"),
-        (&[1, 1, 0, 0, 0, 0, 0], "a turn at no way point"),
+        (&[1, 1, 0, 0, 0, 0, 0], "a turn at no waypoint"),
         (&[1, 0, 0, 0, 0, 0, 1, 5, 5, 0, 0], "a wall without length"),
         (&[1, 0, 0, 0, 0, 0, 0, 0], "a number too many"),
         (&[1, 0, 0, 0, 0, -1], "fewer than none"),

@@ -2,7 +2,7 @@
 //!
 //! A number is zigzag coded (0, −1, 1, −2 … become 0, 1, 2, 3 …) and written from its lowest five bits on; the
 //! sixth bit of a digit is set if more follow, as in source maps. In order: the version, the turn (counted
-//! from 1, or 0), the heading, the start, the number of way points and each as the step from the point
+//! from 1, or 0), the heading, the start, the number of waypoints and each as the step from the point
 //! before, the number of walls, and of each its first end as the step from the second end of the wall before
 //! and its second end as the step from the first. A wall along an axis takes a handful of digits. Five more
 //! are FNV-1a of all others, which detects lost or changed characters.

@@ -41,7 +41,7 @@ pub const EXERCISES: [(&str, &str); 7] = [
     ),
     (
         "gauss_newton",
-        "Each edge adds four 3×3 blocks and two 3-vectors; leave out those of the held node, and give it a diagonal.",
+        "Each edge adds four 3×3 blocks and two 3-vectors; skip the held node's, and give it a diagonal.",
     ),
     (
         "verify_loop",

@@ -32,7 +32,7 @@ pub enum DriveEnd {
 pub struct Heard {
     /// Number of scans.
     pub scans: usize,
-    /// Number of scans that came faster than they were mapped.
+    /// Number of scans that arrived faster than they were mapped.
     pub dropped: usize,
     /// Time of each loss of the connection that came back.
     pub gaps: Vec<Duration>,

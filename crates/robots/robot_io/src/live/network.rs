@@ -157,7 +157,7 @@ impl Heard {
                 None => "pass recording to keep them in a file".to_owned(),
             };
             remarks.push(format!(
-                "{url}: {} of {} scans came faster than this computer maps them and were left out; {rest}",
+                "{url}: {} of {} scans arrived faster than this computer maps them and were left out; {rest}",
                 self.dropped, self.scans
             ));
         }
@@ -204,7 +204,10 @@ mod tests {
         ] {
             let said = heard.remarks("ws://r:1", Some("d/recording.mcap"), host);
             assert!(said[0].contains("lost for 2.5 s"), "{said:?}");
-            assert!(said[1].contains("40 of 1200 scans came faster"), "{said:?}");
+            assert!(
+                said[1].contains("40 of 1200 scans arrived faster"),
+                "{said:?}"
+            );
             let is_named = said[1].contains(&format!("d/recording.mcap: {advice}"));
             assert!(is_named, "{said:?}");
             let is_over = said[2].contains("(the server is silent) and did not come back");

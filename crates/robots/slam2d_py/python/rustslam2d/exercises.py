@@ -7,7 +7,7 @@
     python -m rustslam2d.exercises --log FILE      they map a robot's log, into map.yaml
 
 Each exercise is tested by pytest in a process without your code, which runs in another one and answers calls. So your code
-can return wrong values, or end; it cannot reach the tests, and what it prints or writes counts nothing.
+can return wrong values, or end; it cannot reach the tests, and what it prints or writes is ignored.
 """
 
 import argparse
@@ -25,8 +25,8 @@ from ._apart import TESTS
 HINTS = {
     "svd_align": "Subtract both means first; then only a rotation is left to find, and t follows from the means.",
     "point_to_plane_step": "numpy.column_stack makes the rows. Add the ridge, solve, and turn about the centroid.",
-    "residual": "Z⁻¹ comes first in the product; the rotation part of Ad is that of the pose.",
-    "gauss_newton": "Each edge adds four 3×3 blocks and two 3-vectors; leave out those of the held pose.",
+    "residual": "Z⁻¹ comes first in the product; the rotation part of Ad is the pose's.",
+    "gauss_newton": "Each edge adds four 3×3 blocks and two 3-vectors; skip the held pose's.",
     "verify_loop": "The belief is in the candidate's frame: between(poses[candidate], poses[node]).",
     "trimmed_icp": "Trim after each association, the first one too. Count what is kept with ceil, and keep at least one.",
     "range_histogram": "A bin is the range times 64/max_range, rounded down, 63 at most. Skip bins that are empty in both.",

@@ -8,7 +8,7 @@ use widget_kit::scene::{Bounds, Layer, Mark, Stroke, Tone};
 
 use crate::xy::xy;
 
-/// Way points driven to: three of the ring's four corridors.
+/// Waypoints driven to: three of the ring's four corridors.
 const WAY_POINTS: usize = 3;
 /// Ticks between two sweeps of the map.
 const SWEEP_STEP: usize = 8;
@@ -61,7 +61,7 @@ pub fn layers() -> Vec<Layer> {
         ),
         Layer::pose(wheels.to_array(), Mark::Triangle, Tone::Prediction, 6.0),
         Layer::pose(robot.to_array(), Mark::Square, Tone::Posterior, 6.0),
-        Layer::label(xy(&wheels), "by its wheels alone".to_owned(), 14.0),
+        Layer::label(xy(&wheels), "wheels alone".to_owned(), 14.0),
         Layer::label(xy(&robot), "where it is".to_owned(), 14.0),
     ]
 }

@@ -8,7 +8,7 @@ use crate::w16_2_full_lap::model::moment::Drawn;
 use crate::w16_2_full_lap::model::plan_element::PlanElement;
 use crate::w16_2_full_lap::spec::Tool;
 
-/// Distance of text from its way point, in pixels.
+/// Distance of text from its waypoint, in pixels.
 const CLEAR_PX: f32 = 12.0;
 
 /// Stops nearer to each other than this share a name, m.
@@ -44,7 +44,7 @@ pub fn layers(drawn: &Drawn) -> Vec<Layer> {
         layers.push(handle(heading, "turn the start"));
         layers.push(handle([x, y], "move the start"));
         for at in &places[1..] {
-            layers.push(handle(*at, "move the way point"));
+            layers.push(handle(*at, "move the waypoint"));
         }
         layers.extend(chosen(drawn));
     } else {
@@ -103,13 +103,13 @@ pub fn legend() -> LegendEntry {
     LegendEntry::marked_line("the planned path", Tone::Ink, Mark::Circle, Stroke::Dotted)
 }
 
-/// `Your own flat: 18 walls, 3 way points`.
+/// `Your own flat: 18 walls, 3 waypoints`.
 pub fn title(drawn: &Drawn) -> String {
     let hand = match drawn.tool {
         None => "",
         Some(Tool::Move) => ", moving",
         Some(Tool::Wall) => ", drawing walls",
-        Some(Tool::Way) => ", placing way points",
+        Some(Tool::Way) => ", placing waypoints",
         Some(Tool::Remove) => ", removing",
         Some(Tool::Robot) => ", setting the robot down",
     };

@@ -58,7 +58,11 @@ pub fn strain(moment: &LapState) -> Panel {
         Layer::points(loops, look.mark, look.tone, 4.5),
     ];
     let mut legend = vec![
-        LegendEntry::mark("edge to the keyframe before", Tone::Posterior, Mark::Square),
+        LegendEntry::mark(
+            "edge to the previous keyframe",
+            Tone::Posterior,
+            Mark::Square,
+        ),
         LegendEntry::mark("loop", look.tone, look.mark),
     ];
     if !before.is_empty() {

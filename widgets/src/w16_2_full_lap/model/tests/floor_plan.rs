@@ -224,7 +224,7 @@ fn the_turn_stays_at_its_way_point_while_others_come_and_go() {
     assert_eq!(turn(&model), None);
     press(&mut model, "take-back");
     press(&mut model, "remove");
-    assert_eq!(turn(&model), None, "it went with its way point");
+    assert_eq!(turn(&model), None, "it went with its waypoint");
 }
 
 #[test]
@@ -273,7 +273,7 @@ fn a_flat_that_cannot_be_driven_shows_the_reason_and_no_other_lap() {
     assert_eq!(outcome.standing, Assessment::Bad);
     let sentence = outcome.sentence;
     assert!(
-        sentence.contains("the straight line from the start to way point 1"),
+        sentence.contains("the straight line from the start to waypoint 1"),
         "{sentence}"
     );
     assert!(sentence.contains("wall 19"), "{sentence}");

@@ -9,10 +9,10 @@ use super::Statement;
 use crate::w16_2_full_lap::model::moment::Drawn;
 use crate::w16_2_full_lap::model::plan_element::PlanElement;
 
-/// `18 walls, 3 way points`.
+/// `18 walls, 3 waypoints`.
 pub fn counts(sketch: &Sketch) -> String {
     let walls = plural(sketch.walls_cm.len(), "wall");
-    let way_points = plural(sketch.way_points_cm.len(), "way point");
+    let way_points = plural(sketch.way_points_cm.len(), "waypoint");
     format!("{walls}, {way_points}")
 }
 
@@ -71,7 +71,7 @@ pub fn piece_words(sketch: &Sketch, piece: PlanElement) -> String {
             } else {
                 ""
             };
-            format!("way point {number} of {count}, at {place} m{turn}")
+            format!("waypoint {number} of {count}, at {place} m{turn}")
         }
         PlanElement::Start => format!("the start, at {} m", at(sketch.start_cm)),
         PlanElement::Heading => format!("the start faces {}°", sketch.heading_deg),

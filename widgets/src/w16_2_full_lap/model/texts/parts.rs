@@ -76,7 +76,7 @@ pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
             neutral(
                 format!("keyframe {node}"),
                 format!(
-                    "keyframe {node} of tick {taken}: {error_m:.2} m and {error_deg:.1}° from the truth, its {count} {edges} cost χ² {chi2:.2}{tied}"
+                    "keyframe {node} of tick {taken}: {error_m:.2} m and {error_deg:.1}° from the truth; its {count} {edges} cost χ² {chi2:.2}{tied}"
                 ),
             )
         }
@@ -148,10 +148,7 @@ pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
 fn left(strain: &EdgeStrain) -> String {
     let [x, y, turn] = [0, 1, 2].map(|i| strain.residual[i]);
     let off_m = math::norm2(x, y);
-    format!(
-        "the graph leaves {off_m:.3} m and {:.2}° of it",
-        turn.abs().to_degrees()
-    )
+    format!("residual {off_m:.3} m and {:.2}°", turn.abs().to_degrees())
 }
 
 fn numbers(moment: &LapState, part: GraphPart) -> Numbers {
@@ -240,8 +237,8 @@ pub fn own_statement(moment: &LapState, own: &OwnLoop) -> Statement {
             };
             format!(
                 "your loop {} {claim}, {how}, chi-squared {:.2} {side} {:.3}: history moved {:.2} m. \
-                 It is {:.2} m and {:.1}° from the truth. \
-                 χ² of the graph goes from {:.1} to {:.1}: {keeps:.1} stay in your loop, {:.1} are in the other edges. \
+                 The loop is {:.2} m and {:.1}° from the truth. \
+                 The graph’s χ² goes from {:.1} to {:.1}: {keeps:.1} stay in your loop, {:.1} are in the other edges. \
                  The rms error over the keyframes goes from {:.2} m to {:.2} m",
                 ends(&own.attempt),
                 gate.chi2,
@@ -282,14 +279,8 @@ pub fn facts(moment: &LapState) -> Vec<Fact> {
             "selected: position error",
             looked_at.error_m,
         ),
-        Fact::new("looked_at_chi2", "looked at: χ²", looked_at.chi2, "", 3),
-        Fact::new(
-            "own_gate_chi2",
-            "your loop: χ² of the gate",
-            own_gate,
-            "",
-            2,
-        ),
+        Fact::new("looked_at_chi2", "selected: χ²", looked_at.chi2, "", 3),
+        Fact::new("own_gate_chi2", "your loop: gate χ²", own_gate, "", 2),
         Fact::new("own_chi2_before", "your loop: χ² before", before, "", 2),
         Fact::new("own_chi2_after", "your loop: χ² after", after, "", 2),
         Fact::metres(

@@ -127,7 +127,7 @@ fn lens(
     let times = magnified / 100.0;
     layers.push(Layer::Text {
         at: [0.5 * far, ceiling + 0.5 * (1.0 - LENS_TOP) * top],
-        text: format!("its dent, {times:.0} times taller"),
+        text: format!("its dent, magnified {times:.0} times"),
         tone: Tone::Ink,
     });
     layers

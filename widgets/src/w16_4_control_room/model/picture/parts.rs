@@ -38,8 +38,8 @@ struct Part {
     data: fn(&TickReport) -> String,
 }
 
-/// The operations of a tick in order: the front end's two at every tick, the back end's at keyframes, and the
-/// map last.
+/// The operations of a tick in order: two of the front end at every tick, its keyframe, the back end's at loops,
+/// and the map last.
 static PARTS: [Part; 8] = [
     Part {
         name: "predict",
@@ -302,7 +302,7 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
     }
     Panel {
         id: ID,
-        title: "Times each part worked (size: keyframes handled)".to_owned(),
+        title: "Runs of each part (size: keyframes handled)".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         // Room for the names of the first and the last one.

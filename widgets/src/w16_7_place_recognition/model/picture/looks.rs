@@ -29,7 +29,7 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
             LegendEntry::mark("then", THEN, Mark::Cross),
             LegendEntry::mark("now", NOW, Mark::Square),
         ],
-        ..empty(panel::LOOKS, "What both robots see")
+        ..empty(panel::LOOKS, "What both views show")
     };
     let Some((places, [old, new])) = been.places.as_ref().zip(been.pair()) else {
         return empty;
@@ -83,7 +83,7 @@ fn histograms(old: &RangeHistogram, new: &RangeHistogram, max_range_m: f64, empt
     let line =
         |histogram, tone, width_px| Layer::line(steps(histogram), Stroke::Solid, tone, width_px);
     Panel {
-        title: format!("How far they see: a difference of {:.2}", old.distance(new)),
+        title: format!("Ranges: a difference of {:.2}", old.distance(new)),
         x: Axis::new("range (m)", 0.0, max_range_m),
         y: axis_from_zero("share of the returns", highest.fold(0.0, f64::max)),
         layers: vec![line(old, THEN, 2.5), line(new, NOW, 1.5)],

@@ -71,7 +71,7 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         ..empty(
             panel::SCORES,
             if been.asks {
-                "Each dot is a pair of views: which show one place?"
+                "Each dot pairs two views: which show the same place?"
             } else {
                 "Left of the line: called the same place"
             },
@@ -136,7 +136,7 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         },
     ]);
     if !been.asks {
-        for (name, end) in [("the same place", high), ("another place", low)] {
+        for (name, end) in [("the same place", high), ("different places", low)] {
             let at = [0.93 * largest, 0.85 * end];
             panel.layers.push(Layer::label(at, name.to_owned(), 0.0));
         }

@@ -44,7 +44,7 @@ impl DriveSimulation {
         }
     }
 
-    /// Simulates one tick. Returns the complete drive once its last way point is reached.
+    /// Simulates one tick. Returns the complete drive once its last waypoint is reached.
     ///
     /// # Panics
     /// If called again after that.
@@ -60,7 +60,7 @@ impl DriveSimulation {
         })
     }
 
-    /// Simulates one tick. Returns whether the last way point was reached.
+    /// Simulates one tick. Returns whether the last waypoint was reached.
     fn drive_tick(&mut self) -> bool {
         let config = &self.config;
         let step = self.driver.step(&self.truth);
