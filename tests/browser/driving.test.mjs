@@ -111,7 +111,7 @@ it('a step and a gate typed by the keyboard drive the lap of w16.2', async () =>
     const ours = await outcome(tab, W2);
     await type(tab, ALIGN);
     await press(tab, 'Drive the lap of w16.2 with it');
-    const theirs = await said(tab, W2, 'By your svd_align, ');
+    const theirs = await said(tab, W2, 'With your svd_align, ');
     // 1 cm: a point on the edge of a cell falls to the other side by the last bit, and the lap differs in its millimetres.
     assertNear(theirs, ours, ['keyframe_rms_m', 'graph_error_m'], 0.01);
     assertNear(theirs, ours, ['loops_closed', 'false_loops', 'keyframes'], 0);
@@ -127,7 +127,7 @@ it('a step and a gate typed by the keyboard drive the lap of w16.2', async () =>
     assert.ok((await outcome(tab, W2)).facts.loops_closed > 0);
     await type(tab, 'function gate(innovation, gap, drift, limit) {\n  return { chi2: Infinity, accepted: false };\n}');
     await press(tab, 'Drive the loops of w16.2 with it');
-    assert.equal((await said(tab, W2, 'By your gate, ')).facts.loops_closed, 0);
+    assert.equal((await said(tab, W2, 'With your gate, ')).facts.loops_closed, 0);
     await type(tab, 'function gate(innovation, gap, drift, limit) {\n  return { chi2: 1, accepted: false };\n}');
     await press(tab, 'Let ours drive the loops of w16.2 again');
     await press(tab, 'Drive the loops of w16.2 with it');
@@ -179,7 +179,7 @@ it('a rejection of pairs typed by the keyboard drives w16.1 beside ours, and the
     // The shorter half, whatever it is asked for.
     await type(tab, KEEP.replace('(1 - trim)', '0.5'));
     await press(tab, 'Drive the lap of w16.2 with it');
-    assert.notEqual((await said(tab, W2, 'By your keep_pairs, ')).facts.keyframe_rms_m, lap.facts.keyframe_rms_m);
+    assert.notEqual((await said(tab, W2, 'With your keep_pairs, ')).facts.keyframe_rms_m, lap.facts.keyframe_rms_m);
   });
 });
 

@@ -170,7 +170,7 @@ describe('a robot that drives', () => {
     await beside({ messages, lasers: ['/scan', '/rear'] }, async (tab, robot) => {
       await connect(tab, robot.url);
       await says(tab, /Reads .*\/rear/);
-      await panel(tab).getByLabel('Scans of').selectOption('/rear');
+      await panel(tab).getByLabel('Scans from').selectOption('/rear');
       await tab.waitForFunction(() => {
         const said = document.querySelector('slam-widget').shadowRoot.querySelector('.connection [role=status]').textContent;
         return said.includes('/rear') && !said.includes('/scan');

@@ -96,7 +96,7 @@ params! {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.7",
     name: "Have I been here?",
-    title: "Do views that look alike show the same place?",
+    title: "Do look-alike views show the same place?",
     claim: "Places that look alike may be different.",
     gesture: "Drag the line in the plot.",
     awaits: Awaits::Rest,

@@ -225,16 +225,11 @@ fn every_lap_ends_where_the_timeline_does() {
     }
 }
 
-/// The marks of the parts in their order: tone, mark and radius; a ring around one is left out.
-fn marks(room: &ControlRoom) -> Vec<(Tone, Mark, f32)> {
+/// The marks of the parts in their order.
+fn marks(room: &ControlRoom) -> Vec<(Tone, Mark)> {
     let layers = parts(room).layers.into_iter();
     let marks = layers.filter_map(|layer| match layer {
-        Layer::Points {
-            tone,
-            mark,
-            radius_px,
-            ..
-        } if tone != Tone::Ink => Some((tone, mark, radius_px)),
+        Layer::Points { tone, mark, .. } => Some((tone, mark)),
         _ => None,
     });
     marks.collect()
@@ -243,7 +238,7 @@ fn marks(room: &ControlRoom) -> Vec<(Tone, Mark, f32)> {
 /// The parts whose mark is filled.
 fn at_work(room: &ControlRoom) -> Vec<usize> {
     let marks = marks(room).into_iter().enumerate();
-    let filled = marks.filter(|(_, (_, mark, _))| *mark == Mark::Dot);
+    let filled = marks.filter(|(_, (_, mark))| *mark == Mark::Dot);
     filled.map(|(part, _)| part).collect()
 }
 
@@ -266,21 +261,11 @@ fn a_part_is_filled_in_the_ticks_in_which_it_works() {
 }
 
 #[test]
-fn the_area_of_a_part_is_the_number_of_keyframes_it_goes_through() {
+fn each_part_counts_the_ticks_in_which_it_worked() {
     let mut room = ControlRoom::default();
-    set(&mut room, "t", 92.0);
-    let radii: Vec<f32> = marks(&room).iter().map(|(.., radius)| *radius).collect();
-    let keyframes = radii
-        .iter()
-        .map(|radius| (radius / radii[0]).powi(2).round());
-    // Loop 29 to 7: the older nodes, one fit, the 22 edges between, and all nodes twice.
-    let expected = [1.0, 1.0, 1.0, 29.0, 1.0, 22.0, 30.0, 30.0];
-    assert_eq!(keyframes.collect::<Vec<_>>(), expected);
-    assert_eq!(fact(&room, "keyframes"), 30.0);
-    // After the run, what rests shows its last work and its count, with three loops in the lap.
+    // After the run, with three loops in the lap, the back end rests.
     set(&mut room, "t", 129.0);
     assert_eq!(at_work(&room), [0, 1]);
-    assert!(marks(&room)[7].2 > radii[7]);
     let counts = parts(&room)
         .layers
         .into_iter()
@@ -337,7 +322,7 @@ fn a_press_on_a_part_shows_its_data_at_this_tick() {
         assert_eq!(chosen.outcome(), pressed.outcome());
         assert!(
             parts(&chosen) == parts(&pressed),
-            "{name}: with the same ring"
+            "{name}: with the same line under its name"
         );
         let tables = chosen.shown_tables();
         let tick = tables.iter().find(|table| table.id == "control-room-tick");
@@ -346,25 +331,10 @@ fn a_press_on_a_part_shows_its_data_at_this_tick() {
         assert!(sentence.contains(&row[1]), "{row:?}");
     }
     assert!(pressed.grab("parts", [8.5, 0.5], [0.1, 0.1]).is_none());
-    // A part that does not work in the tick says so, and has no ring.
-    let rings = |room: &ControlRoom| {
-        let layers = parts(room).layers.into_iter();
-        let ring = |layer: &Layer| {
-            matches!(
-                layer,
-                Layer::Points {
-                    tone: Tone::Ink,
-                    ..
-                }
-            )
-        };
-        layers.filter(ring).count()
-    };
-    assert_eq!(rings(&pressed), 1);
+    // A part that does not work in the tick says so.
     set(&mut pressed, "t", 91.0);
     let sentence = pressed.outcome().sentence;
     assert!(sentence.ends_with("Repaint: nothing to do."), "{sentence}");
-    assert_eq!(rings(&pressed), 0);
 }
 
 /// The cells of the grid.
@@ -400,18 +370,16 @@ fn a_loop_passes_the_parts_one_by_one_while_the_grid_is_drawn_again() {
         assert_eq!(room.values().number("t"), 92.0, "the run waits");
         assert_eq!(room.advance(0.02), Activity::Busy);
         let seen = fact(&room, "occupied_cells") + fact(&room, "free_cells");
-        let (.., repaint_px) = marks(&room)[7];
-        frames.push((at_work(&room).len(), repaint_px, seen));
+        frames.push((at_work(&room).len(), seen));
         assert!(frames.len() < 100, "it never ends");
     }
     assert!(frames.len() > 50, "{} frames", frames.len());
     // Candidate, fit, gate, optimize and repaint begin one after the other.
-    let mut working: Vec<usize> = frames.iter().map(|(working, ..)| *working).collect();
+    let mut working: Vec<usize> = frames.iter().map(|(working, _)| *working).collect();
     working.dedup();
     assert_eq!(working, [4, 5, 6, 7, 8]);
-    assert!(frames.is_sorted_by_key(|(_, repaint_px, _)| *repaint_px));
     assert!(
-        frames.is_sorted_by_key(|(.., seen)| *seen),
+        frames.is_sorted_by_key(|(_, seen)| *seen),
         "cells come back"
     );
     while room.values().number("t") == 92.0 {

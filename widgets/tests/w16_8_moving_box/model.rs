@@ -78,7 +78,7 @@ fn the_curves_fill_in_seed_by_seed_and_end() {
     assert!(fact(&moving, "plain_bias_m") > fact(&moving, "trimmed_bias_m"));
     let scene = moving.scene();
     let bias = scene.panels.iter().find(|p| p.id == panel::BIAS).unwrap();
-    assert!(bias.title.ends_with("over 100 seeds"), "{}", bias.title);
+    assert!(bias.title.ends_with("over 100 trials"), "{}", bias.title);
     // Neither the share nor the seed above restarts them; τ does.
     moving.set("share", 45.0).unwrap();
     moving.set("seed", 7.0).unwrap();

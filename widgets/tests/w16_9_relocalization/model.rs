@@ -135,7 +135,7 @@ fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
     while back.advance(0.1) == Activity::Busy {
         assert!(back.values().number("moment") >= at);
         at = back.values().number("moment");
-        waited += usize::from(back.scene().panels[0].title.contains("boxes wait"));
+        waited += usize::from(back.scene().panels[0].title.contains("searching"));
     }
     assert!(waited > 0);
     assert_eq!(at, back.timeline().unwrap().last);

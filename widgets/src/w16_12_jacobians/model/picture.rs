@@ -102,7 +102,7 @@ fn graphs(widget: &WrongJacobians) -> Panel {
             tone: Tone::Ink,
             label: "bend the chain: drag its loose end",
         });
-        layers.push(Layer::label(at, "bend".to_owned(), 14.0));
+        layers.push(Layer::label(at, "loose end".to_owned(), 14.0));
     }
     let title = match widget.step() {
         0 => "All four solvers start here".to_owned(),
@@ -148,7 +148,12 @@ fn ends(widget: &WrongJacobians) -> Vec<Layer> {
     let is_there = |solver: &usize| ends_at_the_optimum(widget, *solver);
     let (there, elsewhere): (Vec<_>, Vec<_>) = (0..NAMES.len()).partition(is_there);
     let least = widget.solved.least_chi2;
-    let words = format!("{} solvers: χ² {least:.1}", there.len());
+    let off_mm = there.iter().map(|solver| 1e3 * widget.shown(*solver).off_m);
+    let within_mm = off_mm.fold(0.0, f64::max).ceil();
+    let words = format!(
+        "{} solvers within {within_mm} mm: χ² {least:.1}",
+        there.len()
+    );
     let tone = there.first().map_or(Tone::Ink, |solver| TONES[*solver]);
     let mut chains = vec![(optimum, tone, words)];
     for solver in elsewhere {

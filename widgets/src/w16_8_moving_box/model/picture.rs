@@ -227,11 +227,11 @@ fn bias(moving: &MovingBox) -> Panel {
     }
     let progress = if curves.progress() < 1.0 {
         format!(
-            ", {:.0}% of {SEEDS} seeds",
+            ", {:.0}% of {SEEDS} trials",
             (100.0 * curves.progress()).floor()
         )
     } else {
-        format!(" over {SEEDS} seeds")
+        format!(" over {SEEDS} trials")
     };
     Panel {
         id: panel::BIAS,

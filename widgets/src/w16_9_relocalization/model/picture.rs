@@ -225,10 +225,7 @@ fn scores(back: &Relocalization) -> Panel {
         Tone::Ink,
         1.25,
     ));
-    // Scores would cross the words.
     if back.place() == 0 {
-        let words = "fits well enough".to_owned();
-        layers.push(Layer::label([0.5 * last, found], words, 4.0));
         let below = [0.5 * last, 0.5 * found];
         layers.push(Layer::question(
             below,
@@ -247,6 +244,7 @@ fn scores(back: &Relocalization) -> Panel {
             LegendEntry::mark("best place of a search", Tone::Posterior, Mark::Square),
             LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
             LegendEntry::line("tracks its pose", Tone::Measurement, Stroke::Solid),
+            LegendEntry::line("fits well enough", Tone::Ink, Stroke::Dashed),
         ],
         color_bar: None,
     }

@@ -222,9 +222,8 @@ pub fn now(back: &Relocalization) -> String {
             format!("Scan {}: {state}", tick + 1)
         }
         (None, Some(counts)) => format!(
-            "Scan {}: {} boxes wait, {} scores computed",
+            "Scan {}: searching, {} scores computed",
             tick + 1,
-            moment.boxes.len(),
             counts.scored()
         ),
         (None, None) => format!("Scan {}", tick + 1),

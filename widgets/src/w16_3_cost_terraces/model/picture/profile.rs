@@ -67,7 +67,7 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
         weight: Weight::Side,
         aspect: Aspect::Free,
         x: Axis::new("from the drop (m)", 0.0, far),
-        y: Axis::new("height (% of the highest)", 0.0, high + sky),
+        y: Axis::hidden(0.0, high + sky),
         layers,
         legend: Vec::new(),
         color_bar: None,

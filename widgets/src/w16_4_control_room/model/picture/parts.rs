@@ -2,7 +2,6 @@
 
 use ch16_lab::lap::{RecordedLoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
-use pr_geom::math;
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use widget_kit::ticks::signed;
 
@@ -32,8 +31,6 @@ enum Done {
 struct Part {
     name: &'static str,
     done: fn(&TickReport) -> Done,
-    /// Keyframes that it goes through, if it works in the tick.
-    keyframes: fn(&TickReport) -> usize,
     /// The numbers of the operation.
     data: fn(&TickReport) -> String,
 }
@@ -44,7 +41,6 @@ static PARTS: [Part; 8] = [
     Part {
         name: "predict",
         done: |_| Done::Passed,
-        keyframes: |_| 1,
         data: |report| {
             let at = report.registration.prediction;
             let off_m = (at.position() - report.registration.estimate.position()).norm();
@@ -58,7 +54,6 @@ static PARTS: [Part; 8] = [
     Part {
         name: "register",
         done: |report| tested(report.registration.accepted),
-        keyframes: |_| 1,
         data: |report| {
             let found = &report.registration.matched;
             format!(
@@ -70,7 +65,6 @@ static PARTS: [Part; 8] = [
     Part {
         name: "keyframe",
         done: |report| executed(report.new_keyframe.is_some()),
-        keyframes: |_| 1,
         data: |report| match report.new_keyframe {
             Some(node) => format!("node {node} and an edge to node {}", node.saturating_sub(1)),
             None => NOTHING.to_owned(),
@@ -79,7 +73,6 @@ static PARTS: [Part; 8] = [
     Part {
         name: "candidate",
         done: |report| executed(report.loop_attempt.is_some()),
-        keyframes: |report| of_loop(report, |attempt| attempt.verification.from_node),
         data: |report| {
             said_of_loop(report, |attempt| {
                 let candidate = &attempt.verification.candidate;
@@ -105,7 +98,6 @@ static PARTS: [Part; 8] = [
                 )
             )),
         },
-        keyframes: |_| 1,
         data: |report| {
             said_of_loop(report, |attempt| {
                 let found = &attempt.verification;
@@ -119,12 +111,6 @@ static PARTS: [Part; 8] = [
             None => Done::Idle,
             Some(attempt) => tested(attempt.verification.gate.passes()),
         },
-        keyframes: |report| {
-            of_loop(report, |attempt| {
-                let found = &attempt.verification;
-                found.from_node - found.candidate.node
-            })
-        },
         data: |report| {
             said_of_loop(report, |attempt| {
                 let gate = &attempt.verification.gate;
@@ -136,7 +122,6 @@ static PARTS: [Part; 8] = [
     Part {
         name: "optimize",
         done: |report| executed(closes_loop(report)),
-        keyframes: all_keyframes,
         data: |report| {
             said_of_loop(report, |attempt| match &attempt.effect {
                 Some(effect) => format!(
@@ -150,7 +135,6 @@ static PARTS: [Part; 8] = [
     Part {
         name: "repaint",
         done: |report| executed(closes_loop(report)),
-        keyframes: all_keyframes,
         data: |report| {
             said_of_loop(report, |attempt| match attempt.effect {
                 Some(_) => format!(
@@ -169,14 +153,6 @@ const NOTHING: &str = "nothing to do";
 fn said_of_loop(report: &TickReport, say: impl Fn(&RecordedLoopAttempt) -> String) -> String {
     let attempt = report.loop_attempt.as_ref();
     attempt.map_or_else(|| NOTHING.to_owned(), say)
-}
-
-fn of_loop(report: &TickReport, count: impl Fn(&RecordedLoopAttempt) -> usize) -> usize {
-    report.loop_attempt.as_ref().map_or(0, count)
-}
-
-fn all_keyframes(report: &TickReport) -> usize {
-    of_loop(report, |attempt| attempt.verification.from_node + 1)
 }
 
 fn tested(passed: bool) -> Done {
@@ -216,14 +192,15 @@ pub fn data(report: &TickReport) -> impl Iterator<Item = (&'static str, String)>
 const CANDIDATE: usize = 3;
 /// Share of a closing after which the last part has begun.
 const BEGUN: f64 = 0.5;
-/// Radius of a mark that stands for one keyframe.
-const ONE_KEYFRAME_PX: f32 = 2.7;
+const MARK_PX: f32 = 8.0;
 /// Heights in the panel, as shares of it: of the marks, of the names (two rows, because on a phone one has no room for
 /// them all) and of the counts.
 const MARKS: f64 = 0.44;
 const NAMES: [f64; 2] = [0.91, 0.76];
 const COUNTS: f64 = 0.09;
-/// Above the largest mark.
+/// From the middle of a name to the line under it.
+const UNDER_NAME: f64 = 0.09;
+/// Above the marks.
 const ABOVE: f64 = 0.64;
 
 /// Where a part stands in the row.
@@ -231,17 +208,14 @@ fn spot(part: usize) -> [f64; 2] {
     [part as f64 + 0.5, MARKS]
 }
 
-/// The share of its work that a part has done when a loop's closing has reached that share of its time.
-fn share_done(part: usize, closing: Option<f64>) -> f64 {
-    let (Some(share), true) = (closing, part >= CANDIDATE) else {
-        return 1.0;
-    };
-    let begins = BEGUN * (part - CANDIDATE) as f64 / (PARTS.len() - CANDIDATE) as f64;
-    ((share - begins) / (1.0 - begins)).max(0.0)
+/// Whether a part has begun its work when a loop's closing has reached that share of its time.
+fn has_begun(part: usize, closing: Option<f64>) -> bool {
+    let begins = BEGUN * part.saturating_sub(CANDIDATE) as f64 / (PARTS.len() - CANDIDATE) as f64;
+    part < CANDIDATE || closing.is_none_or(|share| share > begins)
 }
 
-/// All parts in a row after these ticks: filled if they work in the last one, hollow and as large as at their last work
-/// if they rest, each with the number of ticks in which it worked. A ring is around the chosen one if it works.
+/// All parts in a row after these ticks: filled if they work in the last one, hollow if they rest, each with the number
+/// of ticks in which it worked. The name of the chosen one is underlined.
 pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Panel {
     let ends = [spot(0), spot(PARTS.len() - 1)];
     let mut legend = vec![
@@ -255,40 +229,33 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
         Layer::segments(upper.map(stem).collect(), Stroke::Solid, Tone::Faint, 1.0),
     ];
     for (number, part) in PARTS.iter().enumerate() {
-        let share = share_done(number, closing);
+        let is_on = has_begun(number, closing);
         // A part that has not begun its work in this tick rests.
-        let until = reports.len() - usize::from(share == 0.0);
+        let until = reports.len() - usize::from(!is_on);
         let worked = |report: &&TickReport| (part.done)(report) != Done::Idle;
         let times = reports[..until].iter().filter(worked).count();
-        let newest = reports[..until].iter().rfind(worked);
-        let now = reports.last().filter(|_| share > 0.0);
+        let now = reports.last().filter(|_| is_on);
         let done = now.map_or(Done::Idle, part.done);
         let group = if number < CANDIDATE {
             FRONT_END
         } else {
             BACK_END
         };
-        let (mark, tone, share) = match done {
-            Done::Idle if newest.is_none() => (Mark::Circle, Tone::Faint, 1.0),
-            Done::Idle => (Mark::Circle, group, 1.0),
-            Done::Rejected => (Mark::Circle, REJECTED, share),
-            Done::Passed => (Mark::Dot, group, share),
+        let (mark, tone) = match done {
+            Done::Idle if times == 0 => (Mark::Circle, Tone::Faint),
+            Done::Idle => (Mark::Circle, group),
+            Done::Rejected => (Mark::Circle, REJECTED),
+            Done::Passed => (Mark::Dot, group),
         };
         if tone == REJECTED && legend.len() == 2 {
             legend.push(LegendEntry::mark("rejected", REJECTED, Mark::Circle));
         }
-        let keyframes = newest.map_or(0, part.keyframes) as f64 * share;
-        let radius_px = ONE_KEYFRAME_PX * math::sqrt(keyframes.max(1.0)) as f32;
         let [x, y] = spot(number);
-        layers.push(Layer::points(vec![[x, y]], mark, tone, radius_px));
-        if number == chosen && done != Done::Idle {
-            let ring_px = radius_px + 4.0;
-            layers.push(Layer::points(
-                vec![[x, y]],
-                Mark::Circle,
-                Tone::Ink,
-                ring_px,
-            ));
+        layers.push(Layer::points(vec![[x, y]], mark, tone, MARK_PX));
+        if number == chosen {
+            let under = NAMES[number % 2] - UNDER_NAME;
+            let line = [[x - 0.35, under], [x + 0.35, under]];
+            layers.push(Layer::segments(vec![line], Stroke::Solid, Tone::Ink, 2.0));
         }
         let words = |at_y: f64, text: String| Layer::Text {
             at: [x, at_y],
@@ -302,7 +269,7 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
     }
     Panel {
         id: ID,
-        title: "Runs of each part (size: keyframes handled)".to_owned(),
+        title: "Runs of each part (filled: in this tick)".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         // Room for the names of the first and the last one.

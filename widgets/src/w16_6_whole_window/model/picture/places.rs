@@ -2,6 +2,7 @@
 
 use ch16_lab::whole_window::SeenBox;
 use ch16_slam2d::search::PoseBox;
+use pr_geom::SE2;
 use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Raster, RasterCell, Stroke, Tone, Weight,
 };
@@ -65,14 +66,19 @@ pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
         boxes(dropped.clone().map(|seen| &seen.poses), THROWN_AWAY, 0.5),
         boxes(waiting.map(|seen| &seen.poses), Tone::Series(0), 1.8),
     ];
-    if step == window.boxes_taken() {
-        let largest = dropped.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
-        let best = window.search_task.window.moments()[step].best;
-        if let (Some(SeenBox { poses, .. }), Some(best)) = (largest, best) {
-            layers.push(boxes(core::iter::once(poses), THROWN_AWAY, 2.5));
+    if step == window.boxes_taken()
+        && let Some(best) = window.search_task.window.moments()[step].best
+    {
+        // One of the best pose's place, with other headings, would look as if that were thrown away.
+        let elsewhere = dropped.filter(|seen| !is_over(&seen.poses, best.pose));
+        let largest = elsewhere.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
+        layers.extend(largest.into_iter().flat_map(|SeenBox { poses, .. }| {
             let words = format!("scores at most {:.2}, best {:.2}", poses.bound, best.score);
-            layers.push(Layer::label([poses.x_m[0], poses.y_m[1]], words, 6.0));
-        }
+            [
+                boxes(core::iter::once(poses), THROWN_AWAY, 2.5),
+                Layer::label([poses.x_m[0], poses.y_m[1]], words, 6.0),
+            ]
+        }));
     }
     layers
 }
@@ -82,6 +88,11 @@ pub fn looked_at(window: &WholeWindow) -> Option<Layer> {
     let seen = window.looked_at.as_ref()?.seen;
     let poses = &window.search_task.window.boxes()[seen].poses;
     Some(boxes(core::iter::once(poses), Tone::Series(3), 2.5))
+}
+
+/// Whether a box, seen from above, contains the place of a pose.
+fn is_over(PoseBox { x_m, y_m, .. }: &PoseBox, at: SE2) -> bool {
+    (x_m[0]..=x_m[1]).contains(&at.x()) && (y_m[0]..=y_m[1]).contains(&at.y())
 }
 
 fn width_m(seen: &SeenBox) -> f64 {
