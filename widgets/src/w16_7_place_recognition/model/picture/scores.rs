@@ -71,7 +71,7 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         ..empty(
             panel::SCORES,
             if been.asks {
-                "Each dot pairs two views: which show the same place?"
+                "Each dot pairs two views: of the same place?"
             } else {
                 "Left of the line: called the same place"
             },
