@@ -29,6 +29,7 @@ mod sessions;
 mod settings;
 mod simulation;
 mod slam;
+mod slam_step;
 mod steps;
 mod trajectories;
 
@@ -73,7 +74,9 @@ mod _rustslam2d {
     #[pymodule_export]
     use super::simulation::{Drive, simulate};
     #[pymodule_export]
-    use super::slam::{Slam, SlamStep};
+    use super::slam::Slam;
+    #[pymodule_export]
+    use super::slam_step::SlamStep;
     #[pymodule_export]
     use super::trajectories::save_tum;
 

@@ -12,7 +12,8 @@ use crate::registration::{IcpResult, NdtResult};
 use crate::run_log::{LogResult, Pipeline};
 use crate::sensor::Sensor;
 use crate::simulation::Drive;
-use crate::slam::{Slam, SlamStep};
+use crate::slam::Slam;
+use crate::slam_step::SlamStep;
 
 /// Restores a pickled object.
 #[pyfunction]

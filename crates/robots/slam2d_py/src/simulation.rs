@@ -18,7 +18,8 @@ use crate::callables::Callables;
 use crate::errors::{no_choice, os_error, whole, within};
 use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
-use crate::slam::{Slam, SlamStep};
+use crate::slam::Slam;
+use crate::slam_step::SlamStep;
 
 /// A simulated drive: what a robot would record, and the truth.
 #[pyclass(frozen, module = "rustslam2d")]
