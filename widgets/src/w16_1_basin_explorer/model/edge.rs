@@ -156,7 +156,7 @@ fn question(values: &Values) -> Outcome {
         }
         .to_owned(),
         sentence: format!(
-            "How far can a guess at the right place be turned, to either side, and still converge to the truth? {}. Then press Sweep the edge.",
+            "How far can a guess at the right place turn either way and still converge to the truth? {}. Mark both, then press Sweep the edge.",
             parts.join("; ")
         ),
         facts: Vec::new(),
