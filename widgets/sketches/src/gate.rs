@@ -131,7 +131,7 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
         legend: vec![
             LegendEntry::mark("predicted", Tone::Prior, Mark::Plus),
             LegendEntry::mark("true drifts that pass", Tone::Prior, Mark::Dot),
-            LegendEntry::mark("true drifts rejected", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("rejected drifts", Tone::Prediction, Mark::Triangle),
             LegendEntry::line("gate", Tone::Ink, Stroke::Dotted),
             LegendEntry::mark(label, tone, mark),
         ],
