@@ -65,7 +65,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The front end runs at every tick. It predicts from odometry and corrects with one registration. The threshold τ follows how wrong the predictions were.",
         "The grid stores no poses. After an accepted loop it is discarded and redrawn from every keyframe's sweep.",
         "Cells that are likely occupied have the colour of this text, and free cells the colour of the page. Tinted cells were never seen.",
-        "Each mark below the map is one part, filled while it works and sized by how many keyframes it handles. Predict and register work at every tick on one sweep; optimize and repaint go through every keyframe, and so cost more the longer the robot drives.",
+        "Each mark below the map is one part, filled while it works. Predict and register work at every tick on one sweep; optimize and repaint go through every keyframe, and so cost more the longer the robot drives.",
         "Walls blur where two passes disagree. At the first loop they sharpen, and the number of cells more than 90% likely to be occupied rises from 110 to 156.",
     ],
     opening: Opening {

@@ -1,8 +1,8 @@
 //! A course: a world, the robot's start pose, and the waypoints that it visits.
 //!
 //! Built in are the chapter's Apartment, a ring of corridors, and three worlds in which SLAM fails;
-//! [`Course::from_json`] reads others. A course guarantees that the driver, which turns toward the next way
-//! point and drives straight to it, touches no wall and arrives.
+//! [`Course::from_json`] reads others. A course guarantees that the driver, which turns toward the next
+//! waypoint and drives straight to it, touches no wall and arrives.
 
 mod breaking;
 mod clearance;
