@@ -14,7 +14,7 @@ use crate::system::NormalEquations;
 #[derive(Debug)]
 pub struct LinearSolver {
     structure: Structure,
-    cholesky: Box<BlockCholesky>,
+    cholesky: BlockCholesky,
 }
 
 impl LinearSolver {
@@ -34,7 +34,7 @@ impl LinearSolver {
                 old.cholesky.renew(&structure);
                 old.cholesky
             }
-            None => Box::new(BlockCholesky::new(&structure)),
+            None => BlockCholesky::new(&structure),
         };
         Self {
             structure,

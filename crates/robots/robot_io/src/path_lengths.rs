@@ -119,14 +119,20 @@ mod tests {
 
     use super::*;
 
-    #[test]
-    fn a_path_much_longer_by_odometry_is_reported_and_one_a_tenth_longer_is_not() {
+    /// A map with a keyframe every metre.
+    fn straight(keyframes: u8) -> Slam {
         let mut slam = Slam::new(SlamConfig::default());
         slam.graph_mut().add_fixed_node(SE2::identity());
-        for number in 1..10_u8 {
+        for number in 1..keyframes {
             slam.graph_mut()
                 .add_node(SE2::from_xy(f64::from(number), 0.0));
         }
+        slam
+    }
+
+    #[test]
+    fn a_path_much_longer_by_odometry_is_reported_and_one_a_tenth_longer_is_not() {
+        let slam = straight(10);
         let sentence = |scale: f64| {
             let mut lengths = PathLengths::default();
             for number in 0..10_u8 {
@@ -150,12 +156,7 @@ mod tests {
 
     #[test]
     fn odometry_that_stands_still_half_way_is_named_and_a_robot_at_rest_is_not() {
-        let mut slam = Slam::new(SlamConfig::default());
-        slam.graph_mut().add_fixed_node(SE2::identity());
-        for number in 1..20_u8 {
-            slam.graph_mut()
-                .add_node(SE2::from_xy(f64::from(number), 0.0));
-        }
+        let slam = straight(20);
         let sentence = |last: u8, scale: f64| {
             let mut lengths = PathLengths::default();
             for number in 0..20_u8 {

@@ -1,6 +1,6 @@
 //! Exact covariances of the poses.
 
-use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use pr_optim::OptimizeError;
 
 use super::{NodeId, PoseGraph};
@@ -59,7 +59,6 @@ impl PoseGraph {
     /// # Errors
     /// If the normal equations are not positive definite.
     pub fn aligned_covariances(&mut self) -> Result<Vec<Matrix2<f64>>, OptimizeError> {
-        let stated = self.pose_covariances()?;
         let poses = self.problem.poses();
         let count = poses.len() as f64;
         let sum = poses
@@ -68,14 +67,14 @@ impl PoseGraph {
             .sum::<Vector2<f64>>();
         let centre = sum / count;
         // G of each node, in the frame of its pose; orthogonal, because the rotation is about the centre.
-        let rigid: Vec<Matrix2x3<f64>> = poses
+        let rigid: Vec<Matrix3<f64>> = poses
             .iter()
             .map(|pose| {
                 let arm = pose.translation() - centre;
-                let axes = [(1.0, 0.0), (0.0, 1.0), (-arm.y, arm.x)];
-                Matrix2x3::from_columns(&axes.map(|(x, y)| {
+                let motions = [(1.0, 0.0), (0.0, 1.0), (-arm.y, arm.x)];
+                Matrix3::from_columns(&motions.map(|(x, y)| {
                     let (x, y) = pose.rotation().unrotate(x, y);
-                    Vector2::new(x, y)
+                    Vector3::new(x, y, 0.0)
                 }))
             })
             .collect();
@@ -89,27 +88,19 @@ impl PoseGraph {
             0.0
         };
         let weights = Matrix3::from_diagonal(&Vector3::new(1.0 / count, 1.0 / count, turn));
-        let functions: Vec<Matrix3<f64>> = rigid
-            .iter()
-            .map(|rigid| {
-                let mut of_pose = Matrix3::zeros();
-                of_pose.fixed_rows_mut::<2>(0).copy_from(rigid);
-                of_pose
-            })
-            .collect();
-        let with_motion = self.optimizer.covariances_with(&self.problem, &functions)?;
-        let of_motion: Matrix3<f64> = functions
-            .iter()
-            .zip(&with_motion)
-            .map(|(function, with_motion)| function.transpose() * with_motion)
+        let covariances = self.optimizer.marginals_with(&self.problem, &rigid)?;
+        let nodes = rigid.iter().zip(&covariances);
+        let of_motion: Matrix3<f64> = nodes
+            .clone()
+            .map(|(rigid, [_, with_motion])| rigid.transpose() * with_motion)
             .sum();
-        let aligned = rigid.iter().zip(&with_motion).zip(&stated);
-        Ok(aligned
-            .map(|((rigid, with_motion), stated)| {
+        Ok(nodes
+            .map(|(rigid, [stated, with_motion])| {
                 let aligning = rigid * weights;
-                let cross = with_motion.fixed_rows::<2>(0) * aligning.transpose();
-                stated.fixed_view::<2, 2>(0, 0) - cross - cross.transpose()
-                    + aligning * of_motion * aligning.transpose()
+                let cross = with_motion * aligning.transpose();
+                let aligned = stated - cross - cross.transpose()
+                    + aligning * of_motion * aligning.transpose();
+                aligned.fixed_view::<2, 2>(0, 0).into_owned()
             })
             .collect())
     }

@@ -84,7 +84,8 @@ impl Optimizer {
         Ok(self.factorize_plain(problem)?.measured_covariances(problem))
     }
 
-    /// Covariances of every node with three linear functions of all of them, by node; zero for fixed ones.
+    /// Covariance of every node, as [`marginals`](Self::marginals), beside that with three linear functions of all
+    /// nodes; zero for fixed ones.
     ///
     /// The functions are `Σ Aᵢᵀ δᵢ`, with `Aᵢ` in `functions`, by node.
     ///
@@ -93,13 +94,14 @@ impl Optimizer {
     ///
     /// # Panics
     /// If there is not one block for each node.
-    pub fn covariances_with(
+    pub fn marginals_with(
         &mut self,
         problem: &Problem,
         functions: &[Matrix3<f64>],
-    ) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+    ) -> Result<Vec<[Matrix3<f64>; 2]>, OptimizeError> {
         assert_eq!(functions.len(), problem.node_count());
         let linear = self.factorize_plain(problem)?;
+        let marginals = linear.marginals(problem);
         let positions = linear.structure().position_of.clone();
         let free = || (0..functions.len()).filter(|&node| !problem.fixed()[node]);
         let row_of = |node: usize| 3 * positions[node] as usize;
@@ -111,9 +113,13 @@ impl Optimizer {
             }
         }
         linear.solve_columns(&mut columns);
-        let mut covariances = vec![Matrix3::zeros(); functions.len()];
+        let mut covariances: Vec<_> = marginals
+            .into_iter()
+            .map(|marginal| [marginal, Matrix3::zeros()])
+            .collect();
         for node in free() {
-            covariances[node] = Matrix3::from_fn(|row, column| columns[row_of(node) + row][column]);
+            covariances[node][1] =
+                Matrix3::from_fn(|row, column| columns[row_of(node) + row][column]);
         }
         Ok(covariances)
     }

@@ -232,13 +232,12 @@ impl ScanFields {
     fn ranges(&self, remarks: &mut Vec<String>) -> (f64, f64, f64) {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let of_millimetres = millimetres(&self.ranges_m);
-        let scale = if of_millimetres.is_some() { 1e-3 } else { 1.0 };
-        remarks.extend(of_millimetres);
-        let (min, max) = if scale == 1.0 {
-            (self.range_min, self.range_max)
-        } else {
-            limits_in_metres(self.range_min, self.range_max)
+        let (min, max) = (self.range_min, self.range_max);
+        let (scale, (min, max)) = match of_millimetres {
+            Some(_) => (1e-3, limits_in_metres(min, max)),
+            None => (1.0, (min, max)),
         };
+        remarks.extend(of_millimetres);
         let range_min_m = if positive(min) { min } else { 0.0 };
         let range_max_m = if max > 0.0 { max } else { f64::INFINITY };
         if range_max_m <= range_min_m {
