@@ -120,10 +120,12 @@ describe('the lap under the title', () => {
       await played(4);
       const { traceEvents } = JSON.parse(await browser.stopTracing());
       const named = (which) => traceEvents.filter(({ name }) => name === which);
-      assert.ok(named('FireAnimationFrame').length > 0, 'it plays');
-      // A pass that the end of the trace cuts short has no count.
+      assert.ok(named('FireAnimationFrame').length > 5, 'it plays');
+      // A pass that the end of the trace cuts short has no count. The largest is set aside: a font that arrives late, or the
+      // browser itself, may restyle the page once, whereas a strip that restyled it would do so in each frame.
       const passes = named('UpdateLayoutTree').filter(({ args }) => 'elementCount' in args);
-      const restyled = passes.reduce((sum, { args }) => sum + args.elementCount, 0);
+      const counts = passes.map(({ args }) => args.elementCount).sort((a, b) => a - b).slice(0, -1);
+      const restyled = counts.reduce((sum, count) => sum + count, 0);
       const elements = await tab.evaluate(() => document.querySelectorAll('*').length);
       assert.ok(passes.length > 0 && elements > 3000 && restyled < elements / 10, `${restyled} of ${elements}`);
     });
