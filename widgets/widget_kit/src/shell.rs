@@ -350,6 +350,8 @@ impl Shell {
             self.moving = if activity.is_busy() {
                 Moving::Yes
             } else {
+                // The end of a run may call for work.
+                self.working = true;
                 Moving::No
             };
         }

@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use widget_kit::controls::shown;
 use widget_kit::palette::Theme;
-use widget_kit::scene::Scene;
+use widget_kit::scene::{Layer, RasterCell, Scene};
 use widget_kit::shell::Shell;
 use widget_kit::view::{Arrangement, Row, Slot};
 use widget_kit::zoom::Look;
@@ -250,6 +250,10 @@ fn play_runs_to_the_end_and_is_shown_as_pressed_meanwhile() {
         !harness.state().is_busy(),
         "an idle widget asks for no frame"
     );
+    // The last piece of the picture is worked on after the run only.
+    let scene = harness.state().model().scene();
+    assert!(scene.panels[0].layers.iter().any(|layer| matches!(layer,
+        Layer::Raster(raster) if raster.cells.iter().all(|cell| *cell != RasterCell::Unknown))));
 }
 
 #[test]

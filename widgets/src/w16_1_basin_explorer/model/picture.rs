@@ -3,7 +3,7 @@
 use ch16_lab::basin::{BasinScene, Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
-use pr_geom::{Point2, SE2};
+use pr_geom::{Point2, SE2, math};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
@@ -55,6 +55,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     let turn = turn_handle(explorer);
     let links = explorer.pairs();
     let source = scene.source().transformed(&pose);
+    let alone = lonely(&source, &links);
 
     let mut layers = vec![
         walls(scene),
@@ -85,7 +86,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     layers.extend([
         threads(&links, explorer.values.get(&TAU)),
         points(&source, Mark::Dot, Tone::Posterior, 2.8),
-        Layer::points(lonely(&source, &links), Mark::Circle, Tone::Series(0), 4.5),
+        Layer::points(alone.clone(), Mark::Circle, Tone::Series(0), 4.5),
         sensor(SE2::identity(), Mark::Cross, Tone::Measurement),
         sensor(guess, Mark::Circle, Tone::Prior),
         Layer::segments(
@@ -94,6 +95,12 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
             Tone::Posterior,
             1.5,
         ),
+    ]);
+    // The truth comes with the verdict, below the robot, which hides it where it is right.
+    let is_over = iteration == explorer.last();
+    let truth = scene.truth();
+    layers.extend(is_over.then(|| sensor(truth, Mark::Plus, Tone::Truth)));
+    layers.extend([
         sensor(pose, Mark::Square, Tone::Posterior),
         Layer::Handle {
             at: [turn.x, turn.y],
@@ -112,13 +119,18 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         "first sweep".to_owned(),
         ROBOT_CLEAR_PX,
     ));
-    // The truth comes with the verdict, and how the other turns end.
-    if iteration == explorer.last() {
+    // Their word would jump about while the sweep moves.
+    if iteration == 0 {
+        let far = |at: &[f64; 2]| math::norm2(at[0] - pose.x(), at[1] - pose.y());
+        let furthest = alone.into_iter().max_by(|a, b| far(a).total_cmp(&far(b)));
+        let word = |at| Layer::label(at, "unmatched".to_owned(), HANDLE_CLEAR_PX);
+        layers.extend(furthest.map(word));
+    }
+    // With the verdict it is shown how the other turns end.
+    if is_over {
         if explorer.shows_turns() {
             layers.extend(arc(explorer));
         }
-        let truth = scene.truth();
-        layers.push(sensor(truth, Mark::Plus, Tone::Truth));
         let at = [truth.x(), truth.y()];
         layers.push(Layer::label(at, "truth".to_owned(), ROBOT_CLEAR_PX));
     } else if explorer.previews_end() {
