@@ -182,7 +182,6 @@ fn wardrobe() -> Vec<Layer> {
 }
 
 fn scores(back: &Relocalization) -> Panel {
-    let config = LocalizeConfig::default();
     let mut layers = Vec::new();
     let mut last = 40.0;
     if let Some((_, run)) = back.finished() {
@@ -201,9 +200,7 @@ fn scores(back: &Relocalization) -> Panel {
         let best = reports
             .iter()
             .enumerate()
-            .filter_map(|(tick, report)| Some(at(tick, report.search?.best.score)))
-            .collect::<Vec<_>>();
-        let too_close = best.iter().map(|[x, y]| [[*x, *y], [*x, y - config.min_margin]]);
+            .filter_map(|(tick, report)| Some(at(tick, report.search?.best.score)));
         let next = reports
             .iter()
             .enumerate()
@@ -217,12 +214,11 @@ fn scores(back: &Relocalization) -> Panel {
                 2.0,
             ),
             Layer::line(fits.collect(), Stroke::Solid, Tone::Measurement, 1.75),
-            Layer::segments(too_close.collect(), Stroke::Solid, Tone::Posterior, 2.0),
             Layer::points(next.collect(), Mark::Triangle, Tone::Series(1), 4.0),
-            Layer::points(best, Mark::Square, Tone::Posterior, 4.0),
+            Layer::points(best.collect(), Mark::Square, Tone::Posterior, 4.0),
         ];
     }
-    let found = config.found_score;
+    let found = LocalizeConfig::default().found_score;
     layers.push(Layer::line(
         vec![[0.0, found], [last + 1.0, found]],
         Stroke::Dashed,
@@ -247,7 +243,6 @@ fn scores(back: &Relocalization) -> Panel {
         legend: vec![
             LegendEntry::mark("best place of a search", Tone::Posterior, Mark::Square),
             LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
-            LegendEntry::line("too close to decide", Tone::Posterior, Stroke::Solid),
             LegendEntry::line("tracks its pose", Tone::Measurement, Stroke::Solid),
             LegendEntry::line("fits well enough", Tone::Ink, Stroke::Dashed),
         ],
