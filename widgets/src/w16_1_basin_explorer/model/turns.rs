@@ -15,6 +15,8 @@ use crate::pose_handle::turn_handle;
 const STEP_DEG: f64 = 360.0 / (COLUMNS - 1) as f64;
 /// Width of the arc, pixels.
 const WIDTH_PX: f32 = 5.0;
+/// Width of its outline, pixels.
+const OUTLINE_PX: f32 = 1.5;
 /// Distance of its word from it, pixels.
 const CLEAR_PX: f32 = 10.0;
 
@@ -75,6 +77,11 @@ pub fn arc(explorer: &BasinExplorer) -> Vec<Layer> {
         .collect();
     let middle = arcs.get(arcs.len() / 2);
     let word = middle.map(|arc| Layer::label(arc[0], "ends right".to_owned(), CLEAR_PX));
-    let arc = Layer::segments(arcs, Stroke::Solid, Tone::Class(0), WIDTH_PX);
-    word.into_iter().chain([arc]).collect()
+    // Its colour, that of the basin map, is too light without an outline.
+    let arc = |tone, width_px| Layer::segments(arcs.clone(), Stroke::Solid, tone, width_px);
+    let arc = [
+        arc(Tone::Ink, WIDTH_PX + 2.0 * OUTLINE_PX),
+        arc(Tone::Class(0), WIDTH_PX),
+    ];
+    word.into_iter().chain(arc).collect()
 }
