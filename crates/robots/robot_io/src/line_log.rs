@@ -10,6 +10,7 @@ use ch16_slam2d::scan::LaserScan;
 use crate::foreign::Foreign;
 use crate::lines::{LineEnd, excerpt, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
+use crate::log_bytes::is_damage;
 use crate::range_unit::{centimetres, in_metres};
 use crate::remark::{Part, Remark};
 use crate::table_layout::guess;
@@ -134,7 +135,7 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
         let broken = self.notes.first_broken.as_ref();
         let detail = match broken.or(self.notes.truncated.as_ref()) {
             Some(broken) => format!("{}: {}", broken.position, broken.problem),
-            None => F::NO_SCANS.to_owned(),
+            None => (self.notes.ended_early.clone()).unwrap_or_else(|| F::NO_SCANS.to_owned()),
         };
         LogError::NoScans { name, detail }
     }
@@ -158,15 +159,18 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                 Ok(read) => read,
                 Err(source) => {
                     let position = FilePosition::Line(self.notes.lines + 1);
+                    if !is_damage(&source) {
+                        let name = self.name.clone();
+                        return Err(LogError::Io {
+                            name,
+                            position,
+                            source,
+                        });
+                    }
                     self.notes.ended_early = Some(format!(
                         "{position} cannot be read: {source}; the rest of the file was not read. Copy it again from its source"
                     ));
-                    let name = self.name.clone();
-                    return Err(LogError::Io {
-                        name,
-                        position,
-                        source,
-                    });
+                    None
                 }
             };
             let Some((end, bytes)) = read else {

@@ -1,6 +1,6 @@
 //! Opens the reader of a log by its format.
 
-use std::io::{self, BufRead};
+use std::io::{self, BufRead, Read as _};
 
 use crate::carmen::CarmenReader;
 use crate::course_log::CourseReader;
@@ -15,6 +15,24 @@ use crate::restamped::restamped;
 use crate::ros::{LiveReader, RosReader};
 use crate::table_layout::{ColumnMeaning, TableLayout};
 use crate::table_log::{TableReader, TableRows};
+
+/// Two files that begin with as many equal bytes are one recording: a part has stamps of its own.
+const COPY_BYTES: u64 = 1 << 20;
+
+/// Whether two of the parts are the same file.
+fn has_copies(parts: &[LogBytes<'_>]) -> io::Result<bool> {
+    let mut starts = Vec::new();
+    // One part has no copy, and need not be read.
+    for part in parts.iter().filter(|_| parts.len() > 1) {
+        let mut start = Vec::new();
+        part.stream()?.take(COPY_BYTES).read_to_end(&mut start)?;
+        if starts.contains(&start) {
+            return Ok(true);
+        }
+        starts.push(start);
+    }
+    Ok(false)
+}
 
 impl LogFormat {
     /// Opens a log by its first bytes; errors contain `name`.
@@ -111,6 +129,12 @@ impl LogFormat {
             return Err(foreign(
                 "neither a recording of ROS nor scans with their odometry",
                 "give one log at a time, with a file of odometry beside it or none; its header may be time,x,y,heading",
+            ));
+        }
+        if has_copies(&parts).map_err(io)? {
+            return Err(foreign(
+                "given twice",
+                "give each file of the recording once",
             ));
         }
         let beside = match beside {

@@ -74,6 +74,12 @@ fn split_files_are_one_recording() {
     let cut = &first[..first.len() - 3000];
     let parts = vec![LogBytes::from(cut), LogBytes::from(&second[..])];
     assert_mapped(&mapped(parts, "x", &LogOptions::default()), 125, "skipped");
+    let twice = vec![LogBytes::from(&first[..]), LogBytes::from(&first[..])];
+    let told = mapped(twice, "x", &LogOptions::default()).notes;
+    assert_eq!(
+        told,
+        "x is given twice; give each file of the recording once"
+    );
 }
 
 #[test]
