@@ -8,7 +8,7 @@ mod seen;
 use serde::Serialize;
 
 use crate::info::LogInfo;
-use crate::log::{LogFrame, LogNotes, LogOption};
+use crate::log::{LogError, LogFrame, LogNotes, LogOption};
 use crate::motion::MotionComparison;
 use crate::path_lengths::factor;
 use crate::remark::{Condition, Part, Remark};
@@ -84,6 +84,8 @@ pub struct Checkup {
     gaps: Vec<(f64, f64, bool)>,
     /// Number of returns of each beam.
     returns: Vec<usize>,
+    /// Why the rest of the log was not read.
+    stopped: Option<String>,
 }
 
 impl Checkup {
@@ -106,6 +108,16 @@ impl Checkup {
         }
         self.covered += usize::from(frame.odometry.is_some());
         (self.range_min_m, self.range_max_m) = (scan.range_min_m, scan.range_max_m);
+    }
+
+    /// Ends the pass where the log could not be read any further.
+    pub fn stop(&mut self, problem: &LogError) {
+        self.stopped = Some(match problem {
+            LogError::Io {
+                position, source, ..
+            } => format!("{position}: {source}"),
+            other => other.to_string(),
+        });
     }
 
     /// Number of scans so far.
@@ -157,7 +169,7 @@ impl Checkup {
             }
         });
         let mut remarks = vec![
-            file_remark(notes),
+            file_remark(notes, self.stopped.as_ref()),
             sensor_remark(&sensor, &self.dead_beams()),
         ];
         let is_faulty = notes
@@ -189,17 +201,17 @@ impl Checkup {
     }
 }
 
-fn file_remark(notes: &LogNotes) -> Remark {
+fn file_remark(notes: &LogNotes, stopped: Option<&String>) -> Remark {
     let records: usize = notes.records.values().sum();
     let plain = LogNotes {
         broken: notes.broken,
         first_broken: notes.first_broken.clone(),
         truncated: notes.truncated.clone(),
-        ended_early: notes.ended_early.clone(),
+        ended_early: stopped.or(notes.ended_early.as_ref()).cloned(),
         ..LogNotes::default()
     };
     let sentences = plain.sentences("the file").join("; ");
-    match (sentences.is_empty(), notes.ended_early.is_some()) {
+    match (sentences.is_empty(), plain.ended_early.is_some()) {
         (true, _) => Remark::good(Part::File, format!("all {records} records were read")),
         (false, false) => Remark::mended(Part::File, sentences),
         (false, true) => Remark::wrong(Part::File, sentences),

@@ -3,14 +3,13 @@
 //! A format parses one line. The reader iterates over the file in bounded memory, skips unreadable lines, and reports
 //! where they were.
 
-use std::io::BufRead;
+use std::io::{self, BufRead};
 
 use ch16_slam2d::scan::LaserScan;
 
 use crate::foreign::Foreign;
 use crate::lines::{LineEnd, excerpt, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
-use crate::log_bytes::is_damage;
 use crate::range_unit::{centimetres, in_metres};
 use crate::remark::{Part, Remark};
 use crate::table_layout::guess;
@@ -135,7 +134,7 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
         let broken = self.notes.first_broken.as_ref();
         let detail = match broken.or(self.notes.truncated.as_ref()) {
             Some(broken) => format!("{}: {}", broken.position, broken.problem),
-            None => (self.notes.ended_early.clone()).unwrap_or_else(|| F::NO_SCANS.to_owned()),
+            None => F::NO_SCANS.to_owned(),
         };
         LogError::NoScans { name, detail }
     }
@@ -158,19 +157,14 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             let read = match next_line(&mut self.source, &mut self.line) {
                 Ok(read) => read,
                 Err(source) => {
-                    let position = FilePosition::Line(self.notes.lines + 1);
-                    if !is_damage(&source) {
-                        let name = self.name.clone();
-                        return Err(LogError::Io {
-                            name,
-                            position,
-                            source,
-                        });
-                    }
-                    self.notes.ended_early = Some(format!(
-                        "{position} cannot be read: {source}; the rest of the file was not read. Copy it again from its source"
-                    ));
-                    None
+                    let advice = format!(
+                        "{source}; the rest of the file was not read. Copy it again from its source"
+                    );
+                    return Err(LogError::Io {
+                        name: self.name.clone(),
+                        position: FilePosition::Line(self.notes.lines + 1),
+                        source: io::Error::new(source.kind(), advice),
+                    });
                 }
             };
             let Some((end, bytes)) = read else {

@@ -115,12 +115,6 @@ impl<'a> LogBytes<'a> {
     }
 }
 
-/// Whether the bytes are at fault and not the system: compressed data that is cut off or damaged.
-pub(crate) fn is_damage(problem: &io::Error) -> bool {
-    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
-    matches!(problem.kind(), UnexpectedEof | InvalidData | InvalidInput)
-}
-
 /// Whether a file with this start is compressed as a whole, by gzip or zstd.
 pub(crate) fn packs(start: &[u8]) -> bool {
     start.starts_with(GZIP) || start.starts_with(ZSTD)

@@ -47,8 +47,10 @@ pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
                 run.step(frame);
             }
             Ok(None) => break true,
-            // What is wrong is in the notes.
-            Err(_) if checkup.scans() > 0 => break false,
+            Err(problem) if checkup.scans() > 0 => {
+                checkup.stop(&problem);
+                break false;
+            }
             Err(problem) => return Err(problem.into()),
         }
     };

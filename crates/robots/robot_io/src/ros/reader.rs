@@ -1,5 +1,7 @@
 //! Frames of a ROS recording, for all containers.
 
+use std::io::ErrorKind;
+
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::{Point2, math};
 
@@ -10,7 +12,7 @@ use super::file::{Messages, RosFiles};
 use super::plan::Plan;
 use super::survey::Survey;
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogOptions, LogReader};
-use crate::log_bytes::{LogBytes, is_damage};
+use crate::log_bytes::LogBytes;
 use crate::remark::{Part, Remark};
 
 /// Scans of two lasers are merged if their stamps differ by less than this share of a period.
@@ -128,7 +130,13 @@ impl<'a> RosReader<'a> {
         position: FilePosition,
     ) -> Result<bool, LogError> {
         match error {
-            ContainerError::Io(source) if is_damage(&source) => {
+            // Truncated compressed data is not a system error.
+            ContainerError::Io(source)
+                if matches!(
+                    source.kind(),
+                    ErrorKind::UnexpectedEof | ErrorKind::InvalidData
+                ) =>
+            {
                 let problem = source.to_string();
                 self.notes.truncated = Some(BrokenRecord { position, problem });
             }

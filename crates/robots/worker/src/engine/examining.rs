@@ -46,7 +46,7 @@ impl<'a> Engine<'a> {
             }
             // An error at the end of the log is reported again when it is mapped.
             Ok(None) => {}
-            Err(_) if checkup.scans() > 0 => {}
+            Err(problem) if checkup.scans() > 0 => checkup.stop(&problem),
             Err(problem) => return self.end_of_log(&examination.reader, Some(problem.to_string())),
         }
         self.send_diagnosis(&examination);
