@@ -29,6 +29,8 @@ const TRIED: usize = 3;
 const MOST_TRIED: usize = 100;
 /// Most frames of a topic that are told apart.
 const MAX_FRAMES: usize = 16;
+/// Mean square of the smaller one of x and w beyond which a body is rolled far: by 37°.
+const FAR_ROLLED: f64 = 0.1;
 /// Odometry within this has not moved, m and rad.
 const STILL: f64 = 1e-3;
 
@@ -157,12 +159,24 @@ pub struct BodyPoses {
     pub is_pose: bool,
     /// Number of messages without an orientation; their poses are left out.
     pub without_heading: usize,
+    /// Whether the orientations list w first; then all poses are left out.
+    pub has_w_first: bool,
+    /// Sums of the squares of the orientations' x, y, z and w.
+    squares: [f64; 4],
     /// Keeps every n-th message.
     every: usize,
     seen: usize,
 }
 
 impl BodyPoses {
+    /// Whether the orientations turn about the forward axis only, and far: what turns about the vertical seems to do so
+    /// if w is listed first.
+    fn rolls_only(&self) -> bool {
+        let [x, y, z, w] = self.squares;
+        let rolled = x.min(w);
+        rolled > FAR_ROLLED * (x + y + z + w) && rolled > 10.0 * (y + z)
+    }
+
     fn add(&mut self, stamp_s: f64, recorded_s: f64, pose: SE2) {
         self.every = self.every.max(1);
         self.seen += 1;
@@ -317,8 +331,16 @@ impl Survey {
         }
     }
 
-    /// Ends the survey: separates publishers that use one topic.
+    /// Ends the survey: separates publishers that use one topic, and leaves out odometry whose headings are wrong.
     pub fn end(&mut self) {
+        let rolling = self
+            .odometry
+            .values_mut()
+            .filter(|track| track.rolls_only());
+        for track in rolling {
+            track.has_w_first = true;
+            track.poses.clear();
+        }
         self.scans
             .values_mut()
             .for_each(ScanStream::separate_publishers);
@@ -351,6 +373,10 @@ impl Survey {
                 ..BodyPoses::default()
             });
         if parsed.is_oriented {
+            let parts = parsed.pose.rotation.coords.iter();
+            for (sum, part) in track.squares.iter_mut().zip(parts) {
+                *sum += part * part;
+            }
             track.add(parsed.header.stamp_s, message.recorded_s, pose);
         } else {
             track.without_heading += 1;
@@ -394,4 +420,38 @@ pub fn reader(message: &Recorded) -> Result<WireReader<'_>, String> {
 /// Adds type and topic of the message to a problem.
 pub fn named(message: &Recorded, problem: String) -> String {
     format!("{} on {}: {problem}", message.kind, message.topic)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_orientations_with_w_first_roll_and_do_nothing_else() {
+        let is_w_first = |quaternion: fn(f64, f64) -> [f64; 4], most_rad: f64| {
+            let mut track = BodyPoses::default();
+            for step in 0..=20 {
+                let half_rad = most_rad * f64::from(step) / 40.0;
+                let parts = quaternion(half_rad.sin(), half_rad.cos());
+                for (sum, part) in track.squares.iter_mut().zip(parts) {
+                    *sum += part * part;
+                }
+            }
+            track.rolls_only()
+        };
+        assert!(is_w_first(|sin, cos| [cos, 0.0, 0.0, sin], 2.0));
+        // Level, upside down, leaning sideways, and an optical frame; turning far, and hardly.
+        for most_rad in [0.01, 2.0] {
+            assert!(!is_w_first(|sin, cos| [0.0, 0.0, sin, cos], most_rad));
+            assert!(!is_w_first(|sin, cos| [cos, sin, 0.0, 0.0], most_rad));
+            assert!(!is_w_first(
+                |sin, cos| [0.3 * cos, 0.3 * sin, 0.95 * sin, 0.95 * cos],
+                most_rad
+            ));
+            assert!(!is_w_first(
+                |sin, cos| [-cos, cos, -sin - cos, sin + cos].map(|part| 0.5 * part),
+                most_rad
+            ));
+        }
+    }
 }

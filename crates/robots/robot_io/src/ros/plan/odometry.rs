@@ -150,18 +150,25 @@ pub fn instead_of_odometry(survey: &Survey, scans: &MendedStamps) -> Option<Rema
     ))
 }
 
-/// Remarks on sources of odometry whose poses have no orientation.
+/// Remarks on sources of odometry whose poses have no orientation, or a wrong one.
 pub fn without_headings(survey: &Survey) -> Vec<Remark> {
     let topics = survey.odometry.iter().filter(|(_, track)| !track.is_pose);
     let topics = topics.map(|(topic, track)| (topic.as_str(), track));
     let transforms = survey.tracks.values().map(|track| (TRANSFORMS, track));
     let unset = topics
         .chain(transforms)
-        .filter(|(_, track)| track.without_heading > 0);
+        .filter(|(_, track)| track.without_heading > 0 || track.has_w_first);
     let remarks = unset.map(|(topic, track)| {
         let poses = plural(track.without_heading, "pose");
         let source = format!("{topic} from {} to {}", track.above, track.body);
-        if track.poses.is_empty() {
+        if track.has_w_first {
+            Remark::wrong(
+                Part::Odometry,
+                format!(
+                    "the orientations of {source} roll the robot over, as if w was listed first, so its heading is unknown; this odometry is not used. Publish x, y, z and w in this order"
+                ),
+            )
+        } else if track.poses.is_empty() {
             Remark::wrong(
                 Part::Odometry,
                 format!(
