@@ -3,6 +3,7 @@
 
 mod disturbance;
 mod disturbed;
+mod left_out;
 mod repeated;
 
 use std::collections::BTreeSet;
@@ -18,10 +19,12 @@ use robot_io::evaluate::{Alignment, relation_errors, truth_errors};
 use robot_io::log::LogFrame;
 use robot_io::relations::{Relation, read_relations};
 use robot_io::run::LogRun;
+use robot_io::settings::SettingError;
 use robot_io::trajectory::Trajectory;
 use serde::Serialize;
 
 use self::disturbance::{Disturbance, worse_odometry};
+use self::left_out::Candidates;
 use command_line::in_file::InFile as _;
 use command_line::log_file::{open, read_frames};
 use command_line::numbers;
@@ -60,6 +63,9 @@ pub struct LogsArgs {
     /// Map each log under disturbances instead: later starts, wrong wheels, fewer scans and beams, outliers.
     #[arg(long)]
     disturbed: bool,
+    /// Choose a parameter of the estimator among these values on all logs but one, and report that one, in turn.
+    #[arg(long, value_name = "NAME=VALUE,VALUE", value_parser = left_out::candidates, requires = "disturbed")]
+    leave_one_out: Option<Candidates>,
     /// Drive each log forward and back without a pause instead, this many times: over the same scans, and with noise.
     #[arg(long, value_name = "N", value_parser = numbers::laps, conflicts_with = "disturbed")]
     repeat: Option<usize>,
@@ -111,12 +117,23 @@ struct Row {
 pub fn run(args: &LogsArgs) -> anyhow::Result<()> {
     let benches = read(&args.folder)?;
     if args.disturbed {
-        let outcomes = disturbed::outcomes(&benches, args.seed);
+        let outcomes = |setting| disturbed::outcomes(&benches, args.seed, setting);
+        let (outcomes, chosen) = match &args.leave_one_out {
+            None => (outcomes(None)?, None),
+            Some(candidates) => {
+                let of_all = candidates.each().map(|setting| outcomes(Some(setting)));
+                let of_all = of_all.collect::<Result<Vec<_>, SettingError>>()?;
+                let (outcomes, chosen) = candidates.chosen(&of_all);
+                (outcomes, Some(chosen))
+            }
+        };
         if args.json {
             print_json(&outcomes.concat());
             return Ok(());
         }
-        return publish(args, DISTURBED_MARKS, &disturbed::table(&outcomes));
+        let table = disturbed::table(&outcomes);
+        let lines: Vec<String> = [table].into_iter().chain(chosen).collect();
+        return publish(args, DISTURBED_MARKS, &lines.join("\n"));
     }
     if let Some(drives) = args.repeat {
         let rows = repeated::outcomes(&benches, drives, args.seed);
@@ -263,7 +280,10 @@ impl Bench {
 }
 
 fn mapped(frames: &[LogFrame]) -> LogRun {
-    let mut run = LogRun::default();
+    mapped_by(LogRun::default(), frames)
+}
+
+fn mapped_by(mut run: LogRun, frames: &[LogFrame]) -> LogRun {
     for frame in frames {
         run.step(frame.clone());
     }

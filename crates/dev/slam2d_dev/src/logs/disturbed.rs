@@ -1,14 +1,17 @@
 //! `slam2d-dev logs FOLDER --disturbed`: what disturbances of each log do to its error and to its ellipses.
 
+use std::cmp::Ordering;
+
 use pr_geom::{Matrix2, SE2, Vector2, math};
 use rayon::prelude::*;
 use robot_io::evaluate::{Alignment, onto_truth};
 use robot_io::run::LogRun;
+use robot_io::settings::{Setting, SettingError};
 use robot_io::trajectory::Trajectory;
 use serde::Serialize;
 
 use super::disturbance::Disturbance;
-use super::{Bench, Reference, SLACK_S, mapped};
+use super::{Bench, Reference, SLACK_S, mapped_by};
 
 /// Standard deviation of the references along each axis, m: GMapping's poses and relations by hand.
 const REFERENCE_SIGMA_M: f64 = 0.1;
@@ -32,21 +35,67 @@ pub struct DisturbedResult {
     within_95: Option<f64>,
 }
 
-/// Maps every log under every disturbance; all outcomes of a log together, in the order of [`Disturbance::ALL`].
-pub(super) fn outcomes(benches: &[Bench], seed: u32) -> Vec<Vec<DisturbedResult>> {
+/// Maps every log under every disturbance, with a parameter of this value or all as they are; all outcomes of a log
+/// together, in the order of [`Disturbance::ALL`].
+pub(super) fn outcomes(
+    benches: &[Bench],
+    seed: u32,
+    setting: Option<(&'static Setting, f64)>,
+) -> Result<Vec<Vec<DisturbedResult>>, SettingError> {
     let of_log = |bench: &Bench| {
         let disturbances = Disturbance::ALL.par_iter();
         disturbances
-            .map(|disturbance| bench.outcome(*disturbance, seed))
+            .map(|disturbance| {
+                let run = match setting {
+                    Some((setting, value)) => LogRun::default().with_setting(setting, value)?,
+                    None => LogRun::default(),
+                };
+                Ok(bench.outcome(*disturbance, seed, run))
+            })
             .collect()
     };
     benches.iter().map(of_log).collect()
 }
 
+/// How good the runs of a log are; of several logs the sum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Score {
+    /// Runs that are sound or honest.
+    pub(super) held: usize,
+    /// Mean logarithm of the errors, ln m.
+    pub(super) ln_error: f64,
+}
+
+impl Score {
+    pub(super) fn of(log: &[DisturbedResult]) -> Self {
+        let errors = log.iter().filter_map(|outcome| outcome.error_m);
+        let (sum, count) = errors.fold((0.0, 0), |(sum, count), error_m| {
+            (sum + math::ln(error_m), count + 1)
+        });
+        Self {
+            held: log.iter().filter(|run| is_held(run, &log[0])).count(),
+            ln_error: sum / f64::from(count.max(1)),
+        }
+    }
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            held: self.held + other.held,
+            ln_error: self.ln_error + other.ln_error,
+        }
+    }
+
+    /// By the runs that are held, then by smaller errors.
+    pub(super) fn compare(&self, other: &Self) -> Ordering {
+        let by_error = || other.ln_error.total_cmp(&self.ln_error);
+        self.held.cmp(&other.held).then_with(by_error)
+    }
+}
+
 impl Bench {
-    fn outcome(&self, disturbance: Disturbance, seed: u32) -> DisturbedResult {
+    fn outcome(&self, disturbance: Disturbance, seed: u32, run: LogRun) -> DisturbedResult {
         let frames = disturbance.frames(&self.frames, seed);
-        let mut run = mapped(&frames);
+        let mut run = mapped_by(run, &frames);
         let trajectory = disturbance.as_recorded(&self.frames, &run.trajectory());
         DisturbedResult {
             log: self.name.clone(),
