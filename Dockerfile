@@ -24,7 +24,8 @@ COPY --from=packages /src/dist /opt/site
 COPY teaching/container/start.sh /opt/start.sh
 COPY --chown=student teaching/exercises/python /course/exercises
 COPY --chown=student crates/robots/slam2d_py/notebooks /course/notebooks
-RUN rm -r /course/exercises/solutions /course/exercises/mutants.py && chown student /course
+RUN rm -r /course/exercises/solutions /course/exercises/mutants.py && mkdir /course/work \
+    && chown student /course /course/work
 USER student
 WORKDIR /course
 EXPOSE 8080 8888

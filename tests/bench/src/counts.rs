@@ -150,7 +150,7 @@ fn complaints(counts: &Counts, accepted: &Counts) -> Vec<String> {
             let rise = *count as f64 / *accepted as f64 - 1.0;
             (rise > ALLOWED_RISE).then(|| {
                 format!(
-                    "{id}: {count} instructions, {:.0} % more than the recorded {accepted}",
+                    "{id}: {count} instructions, {:.0} % more than the recorded {accepted}; `cargo xtask record-counts` accepts them",
                     100.0 * rise
                 )
             })
