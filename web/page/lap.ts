@@ -2,6 +2,7 @@
 // A classic script with its data, which runs where it stands: a browser paints the title while it arrives, and parses
 // the text afterwards. A request of its own for the data would be answered only after the whole text was laid out.
 
+import { requestEarly } from '../ts/early-request';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 
@@ -17,7 +18,6 @@ addEventListener('scroll', requestWidgets, { once: true, passive: true });
 function requestWidgets(): void {
   // A page from the disk contains it.
   if (location.protocol === 'file:') return;
-  const link = document.createElement('link');
-  Object.assign(link, { rel: 'preload', as: 'fetch', href: WIDGETS_FILE, crossOrigin: 'anonymous' });
-  document.head.append(link);
+  // Not a preload: WebKit does not use it, and fetches the file twice.
+  requestEarly(new URL(WIDGETS_FILE, document.baseURI).href);
 }

@@ -28,6 +28,7 @@ export function slidesPage(pages, scripts, exercises, render) {
 <html lang="en">
 <head>
 <meta charset="utf-8">
+<script src="early.js"></script>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>SLAM in two dimensions: slides</title>
 <link rel="icon" href="data:,">

@@ -1,5 +1,7 @@
 // The files that this script loads: fetched from the same folder, or embedded in the standalone module.
 
+import { takeEarly } from './early-request';
+
 let embedded: ((file: string) => Promise<Response>) | undefined;
 
 /** From now on files come from `open` instead of the server. */
@@ -11,6 +13,9 @@ export function useEmbeddedFiles(open: (file: string) => Promise<Response>): voi
 export function fetchAsset(file: string, isRetry: boolean, signal: AbortSignal): Promise<Response> {
   if (embedded !== undefined) return embedded(file);
   const url = new URL(file, import.meta.url);
+  const early = isRetry ? undefined : takeEarly(url.href, signal);
+  // What failed early may succeed now.
+  if (early !== undefined) return early.catch(() => fetch(url, { signal }));
   return fetch(url, { cache: isRetry ? 'reload' : 'default', signal });
 }
 

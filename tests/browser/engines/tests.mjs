@@ -24,13 +24,14 @@ const PAGES = {
 };
 
 /** Serves the site; each page records its errors, the server the files that it has not. */
-async function serve(missing) {
+async function serve(missing, modules) {
   const answer = (pathname, response) => {
     if (pathname === WATCH) {
       response.setHeader('Content-Type', 'text/javascript');
       response.end(WATCH_TEXT);
       return true;
     }
+    if (pathname.endsWith('.wasm')) modules.push(pathname);
     const isPage = pathname.endsWith('.html') && pathname !== '/your-code.html';
     if (!isPage) {
       response.on('finish', () => response.statusCode === 404 && pathname !== '/favicon.ico' && missing.push(pathname));
@@ -49,11 +50,12 @@ export function testIn(name, open, problem) {
     let page;
     let server;
     const missing = [];
+    const modules = [];
     const why = problem();
 
     before(async () => {
       if (why !== undefined) return;
-      server = await serve(missing);
+      server = await serve(missing, modules);
       page = await open();
       await page.resize(1100, 900);
     });
@@ -77,7 +79,7 @@ export function testIn(name, open, problem) {
     const isClean = async () => assert.deepEqual(await troublesOf(page), []);
 
     test('every page starts without an error, a violation of its policy, or a missing file', async (context) => {
-      for (const file of [...h.PAGES, 'slides.html', 'embed.html']) {
+      for (const file of [...h.PAGES, 'slides.html', 'notices.html', 'embed.html']) {
         await context.test(file, async () => {
           await page.goto(`${server.url}/${file}${file === 'embed.html' ? '?w=16.1' : ''}`);
           await loaded(page);
@@ -112,6 +114,16 @@ export function testIn(name, open, problem) {
       await until(page, () => window.saved.some(({ size }) => size > 1000));
       await mapsRobot(page);
       await isClean();
+    });
+
+    test('who scrolls fetches the module of the widgets once', async () => {
+      await page.goto(`${server.url}/index.html`);
+      await until(page, () => document.querySelector('#lap.live') !== null);
+      modules.length = 0;
+      await ask(page, () => scrollBy(0, 40));
+      await ask(page, () => document.querySelector('slam-widget').scrollIntoView());
+      await until(page, () => document.querySelector('slam-widget').shadowRoot?.querySelector('.stage.live') !== null);
+      assert.equal(modules.length, 1, modules.join(' '));
     });
 
     test('a page of the chapter in a sandbox runs its lap and its widgets', async () => {

@@ -3,7 +3,7 @@
 // It plays once while it is in view, unless the reader prefers reduced motion. The slider sets the time at any moment.
 
 import { aspectAt, camera, draw, type Ink, worldAt } from './drawing';
-import { type Point, Replay, type Story } from './story';
+import { type Moment, type Point, Replay, type Story } from './story';
 import { canvasSurface, contextOf, type Inks, readInks, watchColors } from './surfaces';
 
 /** Step of the slider and of an arrow key. */
@@ -23,6 +23,8 @@ export class LapPlayer {
   readonly #acts: HTMLElement[];
   #inks: Inks | undefined;
   #seconds = 0;
+  /** The camera's closeness while the robot is dragged: it stays under the hand. */
+  #heldCloseness: number | undefined;
   #isPlaying = false;
   #isSeen = false;
   #lastFrame: number | undefined;
@@ -98,6 +100,7 @@ export class LapPlayer {
     canvas.addEventListener('pointerdown', (event) => {
       if (event.button !== 0 || !isNear(event)) return;
       canvas.setPointerCapture(event.pointerId);
+      this.#heldCloseness = this.#moment().closeness;
       this.#stop();
       ahead = 1;
     });
@@ -106,19 +109,28 @@ export class LapPlayer {
         canvas.style.cursor = isNear(event) ? 'grab' : '';
         return;
       }
-      const { closeness } = this.#replay.at(this.#seconds);
-      const pointer = worldAt([event.offsetX, event.offsetY], closeness, canvas.clientWidth);
+      const pointer = worldAt([event.offsetX, event.offsetY], this.#moment().closeness, canvas.clientWidth);
       const next = this.#replay.nearest(pointer, this.#seconds, ahead);
       if (next !== this.#seconds) ahead = Math.sign(next - this.#seconds);
       this.#goTo(next);
     });
-    for (const type of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(type, () => { ahead = 0; });
+    for (const type of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(type, () => {
+      ahead = 0;
+      this.#heldCloseness = undefined;
+      this.#paint();
+    });
     // A touch on the robot drags it; elsewhere it scrolls the page.
     canvas.addEventListener('touchstart', (event) => { if (ahead !== 0) event.preventDefault(); }, { passive: false });
   }
 
+  /** What is shown. */
+  #moment(): Moment {
+    const moment = this.#replay.at(this.#seconds);
+    return { ...moment, closeness: this.#heldCloseness ?? moment.closeness };
+  }
+
   #robotPx(): Point {
-    const { robot, closeness } = this.#replay.at(this.#seconds);
+    const { robot, closeness } = this.#moment();
     return camera(closeness, this.#canvas.clientWidth)([robot[0], robot[1]]);
   }
 
@@ -178,7 +190,7 @@ export class LapPlayer {
     const context = contextOf(this.#canvas, width / aspectAt(width));
     if (context === undefined) return;
     this.#inks ??= readInks(this.#figure, INKS);
-    draw(this.#story, this.#replay.at(this.#seconds), canvasSurface(context, this.#inks), width);
+    draw(this.#story, this.#moment(), canvasSurface(context, this.#inks), width);
   }
 }
 

@@ -63,8 +63,8 @@ const FADE_IN_S = 0.6;
 /** Fade-out of the arrows of a correction. */
 const FADE_OUT_S = 0.5;
 
-/** A drag searches this range of the replay around the present moment, in steps. */
-const DRAG_RANGE_S = 0.8;
+/** A drag reaches what the robot passes on this length of its path: while it stands, time goes by at once. */
+const DRAG_RANGE_M = 3;
 const DRAG_STEP_S = 0.04;
 /** Preference for the direction of the drag: the ways out and back overlap. */
 const DRAG_BIAS_M = 0.15;
@@ -131,11 +131,17 @@ export class Replay {
 
   /** The time near `seconds` at which the robot is nearest to a point; prefers later (`ahead` = 1) or earlier (−1) ones. */
   nearest([x, y]: Point, seconds: number, ahead: number): number {
-    let best = { cost: Infinity, at: seconds };
-    for (let at = Math.max(seconds - DRAG_RANGE_S, 0); at <= Math.min(seconds + DRAG_RANGE_S, this.lengthS); at += DRAG_STEP_S) {
-      const { robot } = this.at(at);
-      const cost = Math.hypot(robot[0] - x, robot[1] - y) - DRAG_BIAS_M * Math.sign(at - seconds) * ahead;
-      if (cost < best.cost) best = { cost, at };
+    const here = this.at(seconds).robot;
+    let best = { cost: Math.hypot(here[0] - x, here[1] - y), at: seconds };
+    for (const direction of [1, -1]) {
+      let [last, pathM] = [here, 0];
+      for (let at = seconds + direction * DRAG_STEP_S; at >= 0 && at <= this.lengthS && pathM < DRAG_RANGE_M; at += direction * DRAG_STEP_S) {
+        const { robot } = this.at(at);
+        pathM += Math.hypot(robot[0] - last[0], robot[1] - last[1]);
+        last = robot;
+        const cost = Math.hypot(robot[0] - x, robot[1] - y) - DRAG_BIAS_M * direction * ahead;
+        if (cost < best.cost) best = { cost, at };
+      }
     }
     return best.at;
   }

@@ -154,7 +154,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
     name: "Basin explorer",
     title: "How far can you turn a sweep before it settles in a false minimum?",
-    claim: "The start decides: turn it past the arc.",
+    claim: "Only starts on the arc get home.",
     gesture: "Drag the sweep, then let it go.",
     awaits: Awaits::Rest,
     notice: &[

@@ -16,22 +16,39 @@ use crate::ros::{LiveReader, RosReader};
 use crate::table_layout::{ColumnMeaning, TableLayout};
 use crate::table_log::{TableReader, TableRows};
 
-/// Two files that begin with as many equal bytes are one recording: a part has stamps of its own.
-const COPY_BYTES: u64 = 1 << 20;
+/// Files that differ do so within this many bytes as a rule: a part has stamps of its own.
+const START_BYTES: u64 = 1 << 16;
 
-/// Whether two of the parts are the same file.
-fn has_copies(parts: &[LogBytes<'_>]) -> io::Result<bool> {
-    let mut starts = Vec::new();
-    // One part has no copy, and need not be read.
-    for part in parts.iter().filter(|_| parts.len() > 1) {
+/// The parts without those whose bytes are the same as of one before.
+fn without_copies(parts: Vec<LogBytes<'_>>) -> Vec<LogBytes<'_>> {
+    let mut kept: Vec<(Vec<u8>, LogBytes<'_>)> = Vec::new();
+    for part in parts {
         let mut start = Vec::new();
-        part.stream()?.take(COPY_BYTES).read_to_end(&mut start)?;
-        if starts.contains(&start) {
-            return Ok(true);
+        if let Ok(bytes) = part.stream() {
+            // What cannot be read is named when its turn comes.
+            _ = bytes.take(START_BYTES).read_to_end(&mut start);
         }
-        starts.push(start);
+        let is_copy = |(of_other, other): &(Vec<u8>, LogBytes<'_>)| {
+            *of_other == start && are_equal(other, &part).unwrap_or(false)
+        };
+        if !kept.iter().any(is_copy) {
+            kept.push((start, part));
+        }
     }
-    Ok(false)
+    kept.into_iter().map(|(_, part)| part).collect()
+}
+
+fn are_equal(one: &LogBytes<'_>, other: &LogBytes<'_>) -> io::Result<bool> {
+    let (mut one, mut other) = (one.stream()?, other.stream()?);
+    loop {
+        let (first, second) = (one.fill_buf()?, other.fill_buf()?);
+        let count = first.len().min(second.len());
+        if first[..count] != second[..count] || count == 0 {
+            return Ok(first.len() == second.len());
+        }
+        one.consume(count);
+        other.consume(count);
+    }
 }
 
 impl LogFormat {
@@ -131,11 +148,8 @@ impl LogFormat {
                 "give one log at a time, with a file of odometry beside it or none; its header may be time,x,y,heading",
             ));
         }
-        if has_copies(&parts).map_err(io)? {
-            return Err(foreign(
-                "given twice",
-                "give each file of the recording once",
-            ));
+        if parts.len() > 1 {
+            parts = without_copies(parts);
         }
         let beside = match beside {
             Some(_) if found.is_ros() => {

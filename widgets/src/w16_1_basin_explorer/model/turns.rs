@@ -76,7 +76,7 @@ pub fn arc(explorer: &BasinExplorer) -> Vec<Layer> {
         .map(|(turn, _)| [-0.5, 0.5].map(|side| at(heading_deg(turn) + side * STEP_DEG)))
         .collect();
     let middle = arcs.get(arcs.len() / 2);
-    let word = middle.map(|arc| Layer::label(arc[0], "ends right".to_owned(), CLEAR_PX));
+    let word = middle.map(|arc| Layer::label(arc[0], "gets home".to_owned(), CLEAR_PX));
     // Its colour, that of the basin map, is too light without an outline.
     let arc = |tone, width_px| Layer::segments(arcs.clone(), Stroke::Solid, tone, width_px);
     let arc = [
