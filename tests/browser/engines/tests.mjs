@@ -79,7 +79,7 @@ export function testIn(name, open, problem) {
     const isClean = async () => assert.deepEqual(await troublesOf(page), []);
 
     test('every page starts without an error, a violation of its policy, or a missing file', async (context) => {
-      for (const file of [...h.PAGES, 'slides.html', 'notices.html', 'embed.html']) {
+      for (const file of [...h.PAGES, 'slides.html', 'embed.html']) {
         await context.test(file, async () => {
           await page.goto(`${server.url}/${file}${file === 'embed.html' ? '?w=16.1' : ''}`);
           await loaded(page);
