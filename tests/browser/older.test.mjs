@@ -29,6 +29,8 @@ describe('a browser without', () => {
     inert: 'delete HTMLElement.prototype.inert',
     BroadcastChannel: 'delete window.BroadcastChannel',
     DecompressionStream: 'delete window.DecompressionStream',
+    MathML: 'delete window.MathMLElement',
+    ':has': 'CSS.supports = () => false',
   })) {
     it(`${feature} is told on a page of the chapter which browsers have everything`, async () => {
       await visit('', async (tab) => {

@@ -6,14 +6,14 @@ import { chosenTheme, showTheme } from './theme-choice';
 /** Set by the build: the oldest browsers, as in a sentence. */
 declare const BROWSERS: string;
 
-/** What the oldest browsers of the project have, and older ones lack, beside `:has` and MathML. */
+/** What the oldest browsers of the project have, and older ones lack, beside `:has`. */
 const NEEDED: readonly (readonly [object, string])[] = [
   [Array.prototype, 'findLast'], [HTMLElement.prototype, 'inert'], [window, 'BroadcastChannel'], [window, 'DecompressionStream'],
+  [window, 'MathMLElement'],
 ];
 
 restrict(document.currentScript?.dataset['policy'] ?? '');
-const hasStyles = CSS.supports('selector(:has(a))') && 'MathMLElement' in window;
-if (!hasStyles || !NEEDED.every(([owner, name]) => name in owner)) {
+if (!CSS.supports('selector(:has(a))') || !NEEDED.every(([owner, name]) => name in owner)) {
   addEventListener('DOMContentLoaded', () => {
     const line = document.createElement('p');
     line.className = 'older';

@@ -13,10 +13,10 @@ export function useEmbeddedFiles(open: (file: string) => Promise<Response>): voi
 export function fetchAsset(file: string, isRetry: boolean, signal: AbortSignal): Promise<Response> {
   if (embedded !== undefined) return embedded(file);
   const url = new URL(file, import.meta.url);
+  const request = (): Promise<Response> => fetch(url, { cache: isRetry ? 'reload' : 'default', signal });
   const early = isRetry ? undefined : takeEarly(url.href, signal);
   // What failed early may succeed now.
-  if (early !== undefined) return early.catch(() => fetch(url, { signal }));
-  return fetch(url, { cache: isRetry ? 'reload' : 'default', signal });
+  return early?.catch(request) ?? request();
 }
 
 /** The URL of a file; undefined if files are embedded. */

@@ -1,6 +1,6 @@
 //! Opens the reader of a log by its format.
 
-use std::io::{self, BufRead, Read as _};
+use std::io::{self, BufRead};
 
 use crate::carmen::CarmenReader;
 use crate::course_log::CourseReader;
@@ -16,26 +16,17 @@ use crate::ros::{LiveReader, RosReader};
 use crate::table_layout::{ColumnMeaning, TableLayout};
 use crate::table_log::{TableReader, TableRows};
 
-/// Files that differ do so within this many bytes as a rule: a part has stamps of its own.
-const START_BYTES: u64 = 1 << 16;
-
 /// The parts without those whose bytes are the same as of one before.
 fn without_copies(parts: Vec<LogBytes<'_>>) -> Vec<LogBytes<'_>> {
-    let mut kept: Vec<(Vec<u8>, LogBytes<'_>)> = Vec::new();
+    let mut kept: Vec<LogBytes<'_>> = Vec::new();
     for part in parts {
-        let mut start = Vec::new();
-        if let Ok(bytes) = part.stream() {
-            // What cannot be read is named when its turn comes.
-            _ = bytes.take(START_BYTES).read_to_end(&mut start);
-        }
-        let is_copy = |(of_other, other): &(Vec<u8>, LogBytes<'_>)| {
-            *of_other == start && are_equal(other, &part).unwrap_or(false)
-        };
+        // What cannot be read is no copy, and is named when its turn comes.
+        let is_copy = |other: &LogBytes<'_>| are_equal(other, &part).unwrap_or(false);
         if !kept.iter().any(is_copy) {
-            kept.push((start, part));
+            kept.push(part);
         }
     }
-    kept.into_iter().map(|(_, part)| part).collect()
+    kept
 }
 
 fn are_equal(one: &LogBytes<'_>, other: &LogBytes<'_>) -> io::Result<bool> {
@@ -43,8 +34,11 @@ fn are_equal(one: &LogBytes<'_>, other: &LogBytes<'_>) -> io::Result<bool> {
     loop {
         let (first, second) = (one.fill_buf()?, other.fill_buf()?);
         let count = first.len().min(second.len());
-        if first[..count] != second[..count] || count == 0 {
+        if count == 0 {
             return Ok(first.len() == second.len());
+        }
+        if first[..count] != second[..count] {
+            return Ok(false);
         }
         one.consume(count);
         other.consume(count);
@@ -148,9 +142,7 @@ impl LogFormat {
                 "give one log at a time, with a file of odometry beside it or none; its header may be time,x,y,heading",
             ));
         }
-        if parts.len() > 1 {
-            parts = without_copies(parts);
-        }
+        parts = without_copies(parts);
         let beside = match beside {
             Some(_) if found.is_ros() => {
                 return Err(foreign(
@@ -306,5 +298,16 @@ mod tests {
             let opened = LogFormat::open(bytes, "x.log", &LogOptions::default());
             assert_eq!(opened.err().unwrap().to_string(), expected);
         }
+    }
+
+    #[test]
+    fn only_parts_of_the_same_bytes_are_copies() {
+        let long = vec![7; 200_000];
+        let (mut other, mut longer) = (long.clone(), long.clone());
+        other[150_000] = 8;
+        longer.push(7);
+        let counted = |parts: [&[u8]; 4]| without_copies(parts.map(LogBytes::from).to_vec()).len();
+        assert_eq!(counted([&long, &other, &longer, b"b"]), 4);
+        assert_eq!(counted([&long, b"", &long, b""]), 2);
     }
 }

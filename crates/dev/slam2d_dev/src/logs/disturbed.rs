@@ -233,13 +233,9 @@ pub(super) fn table(outcomes: &[Vec<DisturbedResult>]) -> String {
         "starts 0, 1, 2, 5: median, worst".to_owned(),
         starts.collect(),
     ));
-    let held = outcomes.iter().map(|log| {
-        let held = log
-            .iter()
-            .filter(|outcome| is_held(outcome, &log[0]))
-            .count();
-        format!("{held} of {}", log.len())
-    });
+    let held = outcomes
+        .iter()
+        .map(|log| format!("{} of {}", Score::of(log).held, log.len()));
     lines.push(row("sound or honest".to_owned(), held.collect()));
     lines.join("\n")
 }

@@ -159,8 +159,6 @@ pub struct BodyPoses {
     pub is_pose: bool,
     /// Number of messages without an orientation; their poses are left out.
     pub without_heading: usize,
-    /// Whether the orientations list w first; then all poses are left out.
-    pub has_w_first: bool,
     /// Sums of the squares of the orientations' x, y, z and w.
     squares: [f64; 4],
     /// Keeps every n-th message.
@@ -171,7 +169,7 @@ pub struct BodyPoses {
 impl BodyPoses {
     /// Whether the orientations turn about the forward axis only, and far: what turns about the vertical seems to do so
     /// if w is listed first.
-    fn rolls_only(&self) -> bool {
+    pub fn rolls_only(&self) -> bool {
         let [x, y, z, w] = self.squares;
         let rolled = x.min(w);
         rolled > FAR_ROLLED * (x + y + z + w) && rolled > 10.0 * (y + z)
@@ -333,14 +331,10 @@ impl Survey {
 
     /// Ends the survey: separates publishers that use one topic, and leaves out odometry whose headings are wrong.
     pub fn end(&mut self) {
-        let rolling = self
-            .odometry
-            .values_mut()
-            .filter(|track| track.rolls_only());
-        for track in rolling {
-            track.has_w_first = true;
-            track.poses.clear();
-        }
+        let tracks = self.odometry.values_mut();
+        tracks
+            .filter(|track| track.rolls_only())
+            .for_each(|track| track.poses.clear());
         self.scans
             .values_mut()
             .for_each(ScanStream::separate_publishers);

@@ -157,11 +157,11 @@ pub fn without_headings(survey: &Survey) -> Vec<Remark> {
     let transforms = survey.tracks.values().map(|track| (TRANSFORMS, track));
     let unset = topics
         .chain(transforms)
-        .filter(|(_, track)| track.without_heading > 0 || track.has_w_first);
+        .filter(|(_, track)| track.without_heading > 0 || track.rolls_only());
     let remarks = unset.map(|(topic, track)| {
         let poses = plural(track.without_heading, "pose");
         let source = format!("{topic} from {} to {}", track.above, track.body);
-        if track.has_w_first {
+        if track.rolls_only() {
             Remark::wrong(
                 Part::Odometry,
                 format!(
