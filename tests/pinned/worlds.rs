@@ -53,7 +53,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
     match what {
         ["seeds"] => level["runs"].as_f64(),
         ["closed_percent"] => Some(100.0 * (1.0 - level["loop_shares"][0].as_f64()?)),
-        ["false"] => level["false_acceptances"].as_f64(),
+        ["false"] => level["attempts"]["of_false"][0].as_f64(),
         ["accepted"] => level["accepted_loops"].as_f64(),
         [row, "fall_percent"] => {
             let [before, after] =

@@ -36,7 +36,7 @@ impl Outcomes {
         };
         let [a, b, c, d] = of(&record.front_end, &record.front_end_path_errors());
         let [e, f, g, h] = of(&record.lap, &record.path_errors());
-        let loops = [outcome.loops, outcome.false_acceptances].map(|count| count as f64);
+        let loops = [outcome.loops, outcome.attempts.of_false[0]].map(|count| count as f64);
         Ok([a, b, c, d, e, f, g, h, loops[0], loops[1]])
     }
 }

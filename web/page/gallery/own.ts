@@ -90,7 +90,7 @@ function remark(facts: Facts): { notice: string; hint: string } {
   if (!isUnnoticed(facts)) return { notice: `Noticed: the ${agrees}, which scores nothing.`, hint: 'Let the robot see no room twice.' };
   const isHome = metresOff(facts) < HOME_M;
   const change = isHome ? 'rub out doors and corners, so that the walls look the same everywhere' : 'draw longer walls without doors or corners';
-  return { notice: `Nothing warns the robot: its ${agrees}, wrong on both passes.`, hint: `Make it worse: ${change}.` };
+  return { notice: `The map does not warn the robot: its ${agrees}, wrong on both passes.`, hint: `Make it worse: ${change}.` };
 }
 
 function withCapital(words: string): string {

@@ -43,7 +43,7 @@ const QUANTITIES: readonly Quantity[] = [
   {
     name: 'error in the middle of the path',
     measure: (estimate) => estimate.middle,
-    axis: { end: 1.5, unit: ' m', labels: ['0', '0.75', '≥ 1.5 m'] },
+    axis: { end: 3, unit: ' m', labels: ['0', '1.5', '≥ 3 m'] },
     says(laps) {
       const sigma = (of: (lap: Lap) => Estimate): number => median(laps.map((lap) => of(lap).sigma));
       const predicted = percent(sigma(({ frontEnd }) => frontEnd), sigma(({ withLoops }) => withLoops));

@@ -169,7 +169,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "Loops are sorted by how strongly the rest of the graph contradicts them. Reject one, and the graph is solved again at once.",
         "Look where a scan fits badly: glass, people, or a wrong pose.",
-        "A graph with small standard deviations may still be wrong. Only an external reference shows the error.",
+        "A graph with small standard deviations may still be wrong. The innovations of odometry can show a bias; an external reference shows the error itself.",
     ],
     opening: Opening {
         panels: &["map"],

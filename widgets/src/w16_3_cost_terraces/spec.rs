@@ -231,7 +231,7 @@ params! {
         ],
     )
     .default("rank")
-    .help("By rank, every colour covers the same number of cells, so low steps show even on high ground.");
+    .help("By rank, every colour covers the same number of cells, so shallow hollows show even on high ground.");
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
         .help("Seed of the range noise in the sweep; the chapter uses 1472.");
@@ -278,7 +278,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     awaits: Awaits::End,
     notice: &[
         "Both reliefs compare the same sweep with the same points; only the measure differs. Dark is low, and the ball rolls into the dark.",
-        "A small τ breaks ICP's bowl into terraces and hollows. The ball rests in the nearest hollow, however good the solver. The profile beside the relief shows the ball, and the pit it never reached.",
+        "A small τ creases ICP's bowl and leaves hollows in it. The ball rests in the nearest hollow, however good the solver. The profile beside the relief shows the ball, and the pit it never reached.",
         "At each crease a point changes its match, or loses it, so the slope jumps and the height does not. Points about to change light up.",
         "NDT has no such creases, because each point feels the whole bell of its cell. But thin walls make thin bells, so the valley is narrow and the plain around it has dents of its own. Wider cells help.",
         "A wide τ lets ICP reach further than NDT. Neither measure wins everywhere.",

@@ -107,7 +107,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "wrong-loop",
             label: "A false loop gets in",
-            help: "With seed 6 at twice the noise, the first loop passes every test and is 0.36 m out. Only the truth shows it, and no robot has that.",
+            help: "With seed 6 at twice the noise, the first loop passes every test and is 0.36 m out. No test of the robot shows it, because the loop is a near miss.",
             set: &[SEED.to(6), NOISE.to(2.0), TICK.to(92.0)],
             then: &[],
         },

@@ -6,7 +6,9 @@ use pr_geom::sort_numbers;
 use serde::{Deserialize, Serialize};
 
 use crate::incremental::{IncrementalOutcome, IncrementalTrace};
-use crate::lap::{IncrementalKind, LapRecord, LapSummary, PATH_SHARES, PathErrors};
+use crate::lap::{
+    AcceptedShares, IncrementalKind, LapRecord, LapSummary, PATH_SHARES, PathErrors, TestedLoop,
+};
 
 /// A column of the results table: the estimator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,8 +93,8 @@ pub struct LapOutcome {
     pub lap_way: PathErrors,
     /// Errors of its front end alone.
     pub front_end_way: PathErrors,
-    /// False loops that were closed.
-    pub false_acceptances: usize,
+    /// Attempts to close a loop, true and false, and those that were accepted.
+    pub attempts: AcceptedShares,
     /// Digest of all poses; see [`LapRecord::digest`]. It is serialized in hexadecimal, because some readers'
     /// integers end at 2⁵³.
     #[serde(with = "hexadecimal")]
@@ -111,7 +113,11 @@ impl LapOutcome {
             loops: record.lap.graph_summary.loops,
             lap_way: record.path_errors(),
             front_end_way: record.front_end_path_errors(),
-            false_acceptances: record.lap.false_acceptances().count(),
+            attempts: AcceptedShares::of(
+                &record.lap.tested_loops().collect::<Vec<_>>(),
+                TestedLoop::is_false,
+                |tested| tested.accepted,
+            ),
             digest: record.digest(),
             incremental_runs: [None; IncrementalKind::ALL.len()],
         }
@@ -227,7 +233,7 @@ impl LapStatistics {
     /// Share of the laps that closed a false loop.
     #[must_use]
     pub fn false_run_share(&self) -> f64 {
-        self.share(|outcome| outcome.false_acceptances > 0)
+        self.share(|outcome| outcome.attempts.of_false[0] > 0)
     }
 
     /// Closed loops of all laps.
@@ -236,11 +242,14 @@ impl LapStatistics {
         self.outcomes.iter().map(|outcome| outcome.loops).sum()
     }
 
-    /// The false ones among [`Self::accepted_loops`].
+    /// Attempts of all laps, true and false, and those that were accepted.
     #[must_use]
-    pub fn false_acceptances(&self) -> usize {
-        let counts = self.outcomes.iter();
-        counts.map(|outcome| outcome.false_acceptances).sum()
+    pub fn attempts(&self) -> AcceptedShares {
+        self.outcomes
+            .iter()
+            .fold(AcceptedShares::default(), |sum, outcome| {
+                sum.plus(&outcome.attempts)
+            })
     }
 }
 
@@ -302,14 +311,16 @@ mod tests {
         let right = LapOutcome::from_record(&record);
         let mut wrong = right;
         wrong.loops = 4;
-        wrong.false_acceptances = 2;
+        wrong.attempts.of_false = [2, 3];
         let mut lost = right;
         lost.loops = 0;
         let outcomes = vec![right, wrong, lost, lost];
         let statistics = LapStatistics { outcomes };
         assert_eq!(statistics.loop_shares(), [0.5, 0.0, 0.0, 0.5]);
         assert_eq!(statistics.accepted_loops(), 7);
-        assert_eq!(statistics.false_acceptances(), 2);
+        assert_eq!(statistics.attempts().of_false, [2, 3]);
+        let [accepted, all] = right.attempts.of_true;
+        assert_eq!(statistics.attempts().of_true, [4 * accepted, 4 * all]);
         assert_eq!(statistics.false_run_share(), 0.25);
     }
 

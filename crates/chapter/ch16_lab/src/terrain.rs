@@ -4,7 +4,7 @@
 //! points of `min(d², τ²)`, d the distance to the nearest map point (m²); NDT's is the mean score
 //! of the points (no unit). Every shift is evaluated; nothing is interpolated.
 //!
-//! The ICP landscape has one local minimum for every pairing of points along a wall, and plateaus where most
+//! The ICP landscape has one local minimum for every pairing of points along a wall, and plateaus where all
 //! points are truncated. The NDT landscape is smooth but falls to zero a cell away from the walls. [`Ball`]
 //! descends on either; [`TerrainScene::information`] returns how steep the valley is.
 //!

@@ -2,7 +2,7 @@
 //! whether the result is plausible.
 //!
 //! A [`LoopDetector`] proposes, [`verify_loop`] registers and tests; the two are independent. Three tests guard
-//! the graph, because one false loop ruins it: the registration has to fit (`rmse`), enough points have to be
+//! the graph, because a false loop far from the truth wrecks it: the registration has to fit (`rmse`), enough points have to be
 //! paired (`inliers`), and the innovation `ξ = log(T₀⁻¹ T̂)` between the graph's relative pose T₀ and the
 //! registered T̂ has to lie within the possible drift of the odometry between the two nodes: `ξᵀ S⁻¹ ξ ≤ χ²`.
 //!

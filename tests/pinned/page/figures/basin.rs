@@ -3,7 +3,8 @@
 use ch16_lab::basin::{
     BasinOutcome, BasinScene, BasinStart, EdgeSearch, HOME_HEADING_DEG, Minimum, SUCCESS_RADIUS_M,
 };
-use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace, correspondences, icp_information};
+use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace, correspondences};
+use ch16_slam2d::matching::{TrustConfig, match_information};
 
 /// The widget's own τ, m.
 pub const TAU_M: f64 = 0.7;
@@ -65,7 +66,8 @@ pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
         ["edge_deg"] => edge_deg(scene, name, settings),
         ["from_deg"] => basin_edge(scene, name, settings, -1),
         ["to_deg"] => basin_edge(scene, name, settings, 1),
-        ["quarter_from_deg"] => quarter_from_deg(scene, name, settings),
+        ["quarter_from_deg"] => quarter_from_deg(scene, name, settings, 1),
+        ["quarter_below_deg"] => quarter_from_deg(scene, name, settings, -1),
         ["iterations_least"] => iterations_in_basin(scene, name, settings)?.min(),
         ["iterations_most"] => iterations_in_basin(scene, name, settings)?.max(),
         ["short", "starts"] => Some(whole_degrees().count() as f64),
@@ -115,15 +117,20 @@ fn config(name: &str, settings: Settings) -> Option<IcpConfig> {
     })
 }
 
-/// The standard deviation of the position in its loosest direction, according to a registration whose heading is unknown
-/// as well.
+/// The standard deviation of the robot's position in its loosest direction, according to a registration whose heading is
+/// unknown as well.
 fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f64> {
     /// Range noise of the scene's sensor, m.
     const SIGMA_M: f64 = 0.012;
     let config = config(name, OWN)?;
     let found = register(scene, name, OWN, heading_deg)?;
     let pairs = correspondences(scene.source(), scene.map(), found.pose, &config);
-    let information = icp_information(&pairs, SIGMA_M, 1.0);
+    let trust = TrustConfig {
+        sigma_m: SIGMA_M,
+        covariance_scale: 1.0,
+        ..TrustConfig::default()
+    };
+    let information = match_information(&pairs, &found.pose, &trust);
     let position = information
         .try_inverse()?
         .fixed_view::<2, 2>(0, 0)
@@ -145,15 +152,15 @@ fn whole_degrees() -> impl Iterator<Item = i32> {
     -180..=180
 }
 
-/// The smallest whole degree from which, as from each larger one up to 90°, a registration ends a quarter
-/// turn off.
-fn quarter_from_deg(scene: &BasinScene, name: &str, settings: Settings) -> Option<f64> {
+/// The whole degree nearest to zero on one side from which, as from each one up to 90° on that side, a registration ends
+/// a quarter turn off.
+fn quarter_from_deg(scene: &BasinScene, name: &str, settings: Settings, side: i32) -> Option<f64> {
     let is_quarter = |degrees: &i32| {
-        register(scene, name, settings, f64::from(*degrees))
+        register(scene, name, settings, f64::from(side * degrees))
             .is_some_and(|found| found.ending == Minimum::QuarterTurn)
     };
     let last_other = (0..=90).rev().find(|degrees| !is_quarter(degrees))?;
-    Some(f64::from(last_other + 1))
+    Some(f64::from(side * (last_other + 1)))
 }
 
 /// Iterations from each whole degree of the correct basin, except for the truth itself.

@@ -234,8 +234,10 @@ fn of_laps(all: &Laps, path: &[&str]) -> Option<f64> {
         }
         ["loops", count] => 100.0 * laps.loop_shares().get(count.parse::<usize>().ok()?)?,
         ["accepted"] => laps.accepted_loops() as f64,
-        ["false_percent"] => 100.0 * laps.false_acceptances() as f64 / laps.accepted_loops() as f64,
-        ["false"] => laps.false_acceptances() as f64,
+        ["false_percent"] => {
+            100.0 * laps.attempts().of_false[0] as f64 / laps.accepted_loops() as f64
+        }
+        ["false"] => laps.attempts().of_false[0] as f64,
         ["false_runs_percent"] => 100.0 * laps.false_run_share(),
         ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
         _ => return None,
@@ -247,7 +249,7 @@ fn grew_percent(laps: &LapStatistics, with_false: bool) -> f64 {
     let of_kind = laps
         .outcomes
         .iter()
-        .filter(|lap| (lap.false_acceptances > 0) == with_false);
+        .filter(|lap| (lap.attempts.of_false[0] > 0) == with_false);
     let outcomes: Vec<_> = of_kind.copied().collect();
     100.0 * LapStatistics { outcomes }.share(|lap| grew(lap, |lap| lap.keyframe_rms_m))
 }

@@ -1,6 +1,6 @@
 //! Distribution of the figures of the laps at one noise factor.
 
-use ch16_lab::lap::LapEstimator;
+use ch16_lab::lap::{AcceptedShares, LapEstimator};
 use ch16_lab::results::{LapStatistics, ResultColumn, ResultRow};
 use serde::{Serialize, Serializer};
 
@@ -18,8 +18,8 @@ pub struct Level {
     /// Shares of the runs with 0, 1, 2 and 3 or more accepted loops.
     loop_shares: [f64; 4],
     accepted_loops: usize,
-    /// Accepted loops that are off by more than 0.3 m or 5° from the truth.
-    false_acceptances: usize,
+    /// Accepted attempts and all, of the true loops and of the false ones, which are off by more than 0.3 m or 5°.
+    attempts: AcceptedShares,
     /// Share of the runs with a false acceptance.
     false_run_share: f64,
     /// Whether loop closure was on.
@@ -75,7 +75,7 @@ impl Level {
             runs: statistics.outcomes.len(),
             loop_shares: statistics.loop_shares(),
             accepted_loops: statistics.accepted_loops(),
-            false_acceptances: statistics.false_acceptances(),
+            attempts: statistics.attempts(),
             false_run_share: statistics.false_run_share(),
             has_loops: args.has(LapEstimator::Graph),
             entries: entries(args, statistics),
@@ -210,9 +210,18 @@ fn print_loops(level: &Level) {
         "  accepted loops: 0 in {none:.1}%, 1 in {one:.1}%, 2 in {two:.1}%, 3 or more in {more:.1}%"
     );
     say!(
-        "  false acceptances: {} of {} loops, in {:.1}% of the runs",
-        level.false_acceptances,
+        "  false loops among them: {} of {}, in {:.1}% of the runs",
+        level.attempts.of_false[0],
         level.accepted_loops,
         100.0 * level.false_run_share
+    );
+    let AcceptedShares { of_true, of_false } = level.attempts;
+    let [true_percent, false_percent] = level.attempts.rates().map(|rate| 100.0 * rate);
+    say!(
+        "  accepted attempts: {} of {} true ones, {true_percent:.1}%; {} of {} false ones, {false_percent:.1}%",
+        of_true[0],
+        of_true[1],
+        of_false[0],
+        of_false[1],
     );
 }

@@ -35,7 +35,7 @@ const WEIGHT_TOLERANCE: f64 = 1e-6;
 /// Relative increase of the cost that rounding may cause.
 const COST_SLACK: f64 = 1e-9;
 
-/// Largest number of solver iterations: a false loop bends the whole graph.
+/// Largest number of solver iterations: a loop far from the truth bends the whole graph.
 const MAX_ITERATIONS: usize = 100;
 
 /// The cost of an edge of the graph.

@@ -7,6 +7,7 @@
 use super::loop_error::LoopError;
 use super::record::LapTrace;
 use ch16_slam2d::loops::LoopRejection;
+use serde::{Deserialize, Serialize};
 
 /// An attempt to close a loop beside the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +49,7 @@ impl LapTrace {
 }
 
 /// Accepted attempts beside all attempts, of the true loops and of the false ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AcceptedShares {
     /// Accepted, and all.
     pub of_true: [usize; 2],
@@ -75,6 +76,16 @@ impl AcceptedShares {
             *all += 1;
         }
         shares
+    }
+
+    /// The counts of both.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        let sum = |a: [usize; 2], b: [usize; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            of_true: sum(self.of_true, other.of_true),
+            of_false: sum(self.of_false, other.of_false),
+        }
     }
 
     /// Shares of the true and of the false attempts that were accepted; NaN without attempts.
