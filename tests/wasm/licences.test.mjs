@@ -136,7 +136,7 @@ describe('the published notices', () => {
 
 it('every accepted licence is distinguished from every other by its text', () => {
   const texts = { MIT: `${ROOT}LICENSE-MIT`, 'Apache-2.0': `${ROOT}LICENSE-APACHE`,
-    'OFL-1.1': `${ROOT}web/licences/texts/katex-fonts-OFL-1.1.txt`, 'Bitstream-Vera': `${ROOT}web/fonts/LICENSE.txt` };
+    'OFL-1.1': `${ROOT}web/licences/texts/katex-fonts-OFL-1.1.txt`, 'Bitstream-Vera': `${ROOT}web/fonts/dejavu/LICENSE.txt` };
   for (const [id, file] of Object.entries(texts)) {
     const words = readFileSync(file, 'utf8').toLowerCase().replace(/\s+/g, ' ');
     const known = [...SHIPPED].filter(([, pattern]) => pattern.test(words)).map(([name]) => name);

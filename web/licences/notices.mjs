@@ -21,16 +21,14 @@ export async function partsOfWidgets(metafiles) {
     repository: '',
     url: 'https://github.com/rust-lang/rust',
   };
-  const font = {
-    name: 'DejaVu Sans Condensed, a subset',
-    version: '2.37',
-    licence: 'Bitstream-Vera',
-    repository: '',
-    url: 'https://dejavu-fonts.github.io/',
-    folder: path.join(ROOT, 'web/fonts'),
-  };
+  const font = (name, version, licence, url, folder) => (
+    { name: `${name}, a subset`, version, licence, repository: '', url, folder: path.join(ROOT, 'web/fonts', folder) });
+  const fonts = [
+    font('Public Sans', '2.001', 'OFL-1.1', 'https://public-sans.digital.gov/', 'public-sans'),
+    font('DejaVu Sans Condensed', '2.37', 'Bitstream-Vera', 'https://dejavu-fonts.github.io/', 'dejavu'),
+  ];
   return grouped({
-    'In the WebAssembly module': [library, ...cratesOfModule('slam_web'), font],
+    'In the WebAssembly module': [library, ...cratesOfModule('slam_web'), ...fonts],
     'In the module that maps a reader’s log': [library, ...cratesOfModule('slam_robot')],
     'In the scripts of the element': await npmPackagesIn(...metafiles),
   });
