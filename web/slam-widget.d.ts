@@ -117,7 +117,7 @@ export interface CostTerracesState {
   heading: number;
   /** The relief is sampled at this many shifts along each axis. 49 to 161. */
   cells: number;
-  /** By rank, every colour covers the same number of cells, so low steps show even on high ground. */
+  /** By rank, every colour covers the same number of cells, so shallow hollows show even on high ground. */
   colours: 'value' | 'rank';
   /** Seed of the range noise in the sweep; the chapter uses 1472. 0 to 4294967295. */
   seed: number;

@@ -4,7 +4,7 @@
 import { create } from './dom';
 import type { ButtonStates, Timeline } from './instance';
 import { REST, type Places } from './parts';
-import { rangeOf } from './ranges';
+import { rangeOf, showFill } from './ranges';
 import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
 import { toLabel } from './values';
 
@@ -246,6 +246,7 @@ export class Controls {
         const showTyped = this.#typed(field, spec);
         const show = (text: string): void => {
           range.value = text;
+          showFill(range);
           range.setAttribute('aria-valuetext', toLabel(spec, text));
           showTyped(text);
         };

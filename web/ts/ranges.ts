@@ -18,6 +18,7 @@ export function rangeOf(spec: ParamSpec, host: RangeHost): HTMLInputElement {
   const range = create('input', { type: 'range', min: `${min}`, max: `${max}`, step: 'any' });
   undoSwipes(range, host);
   range.addEventListener('input', () => {
+    showFill(range);
     const steps = Math.round((Number(range.value) - min) / spec.step);
     host.set(tidy(min + steps * spec.step));
   });
@@ -30,6 +31,12 @@ export function rangeOf(spec: ParamSpec, host: RangeHost): HTMLInputElement {
     host.set(tidy(next));
   });
   return range;
+}
+
+/** Fills the rail up to the thumb. */
+export function showFill(range: HTMLInputElement): void {
+  const [min, max, value] = [range.min, range.max, range.value].map(Number) as [number, number, number];
+  range.style.setProperty('--fill', String(max > min ? (value - min) / (max - min) : 0));
 }
 
 /** A touch moves the thumb at once. If it then scrolls the page, the value returns. */

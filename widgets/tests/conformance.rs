@@ -668,18 +668,37 @@ fn every_part_of_the_opening_layer_exists() {
             (params, spec.opening.params),
             (buttons, spec.opening.buttons),
         ] {
-            assert!(!named.is_empty(), "{}", spec.id);
             for id in named {
                 assert!(known.contains(id), "{} has no {id}", spec.id);
             }
         }
         let name = spec.id;
-        assert_eq!(
-            spec.opening.params.len(),
-            1,
-            "{name} opens with one control"
-        );
         assert!(spec.opening.buttons.contains(&"play"), "{name}");
+        assert!(!spec.opening.panels.is_empty(), "{name}");
+    }
+}
+
+/// The end condition of the round's commission: at rest one picture, and one slider, which is the run's.
+#[test]
+fn at_rest_a_widget_shows_one_picture_and_one_slider() {
+    // The marks that light the part at work, and the line that the reader drags over the pairs.
+    let strips = [("w16.4", "parts"), ("w16.7", "scores")];
+    for make in MODELS {
+        let model = make();
+        let spec = model.spec();
+        let disclosure = model.disclosure();
+        let scene = model.scene();
+        let shown = scene.panels.iter().filter(|panel| {
+            disclosure.has_panel(panel.id)
+                && panel.question().is_none()
+                && !strips.contains(&(spec.id, panel.id))
+        });
+        let shown: Vec<_> = shown.map(|panel| panel.id).collect();
+        assert_eq!(shown.len(), 1, "{}: {shown:?}", spec.id);
+        let sliders = spec.params.iter().filter(|param| {
+            matches!(param.kind, ParamKind::Slider { .. }) && disclosure.has_param(param.id)
+        });
+        assert_eq!(sliders.count(), 0, "{} has the slider of its run", spec.id);
     }
 }
 

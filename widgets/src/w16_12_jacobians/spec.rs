@@ -93,7 +93,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     ],
     opening: Opening {
         panels: &["graphs"],
-        params: &["bias"],
+        params: &[],
         buttons: &["play"],
     },
     params: PARAMS,

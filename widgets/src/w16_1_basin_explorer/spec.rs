@@ -167,7 +167,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     ],
     opening: Opening {
         panels: &["sweeps", "basin-point-to-point", "basin-point-to-plane"],
-        params: &["heading"],
+        params: &[],
         buttons: &["play"],
     },
     params: PARAMS,

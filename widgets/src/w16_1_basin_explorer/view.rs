@@ -6,10 +6,11 @@ use widget_kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot};
 use crate::w16_1_basin_explorer::model::panel;
 
 /// Height of a map beside the sweeps: both maps together are as high as the sweeps alone, so nothing jumps as they
-/// enter.
-const BESIDE_PX: f32 = 109.0;
+/// enter. The first is for a picture below [`NARROW_PX`], where their keys take a row more.
+const BESIDE_PX: [f32; 2] = [74.0, 95.0];
+const NARROW_PX: f32 = 600.0;
 /// Height of the sweeps on a phone, alone and above a map: both are equally high with it.
-const PHONE_PX: [f32; 2] = [500.0, 226.0];
+const PHONE_PX: [f32; 2] = [500.0, 214.0];
 /// Height of a map on a phone.
 const BELOW_PX: f32 = 112.0;
 
@@ -19,7 +20,8 @@ pub fn arrange(scene: &Scene, width: f32) -> Arrangement {
     let curve = Slot::fixed(panel::CURVE, 120.0);
     if width >= SIDE_BY_SIDE {
         let sweeps = Slot::natural(panel::SWEEPS, 515.0);
-        let maps = [panel::POINT, panel::PLANE].map(|id| Slot::fixed(id, BESIDE_PX));
+        let beside_px = BESIDE_PX[usize::from(width >= NARROW_PX)];
+        let maps = [panel::POINT, panel::PLANE].map(|id| Slot::fixed(id, beside_px));
         return Arrangement {
             stage: vec![Row::of_columns(&[(1.5, &[sweeps]), (1.0, &maps)])],
             below: Row::each(&[curve]),

@@ -70,7 +70,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     ],
     opening: Opening {
         panels: &["map", "parts"],
-        params: &["noise"],
+        params: &[],
         buttons: &["play"],
     },
     params: PARAMS,

@@ -155,7 +155,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     ],
     opening: Opening {
         panels: &["graph", "bars"],
-        params: &["stiffness"],
+        params: &[],
         buttons: &["play", "step", "reset"],
     },
     params: PARAMS,

@@ -83,7 +83,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     ],
     opening: Opening {
         panels: &["sweeps"],
-        params: &["heading"],
+        params: &[],
         buttons: &["play", "step", "reset"],
     },
     params: PARAMS,

@@ -108,8 +108,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A looser threshold finds more true pairs but also admits more false ones. No point on the curve comes free.",
     ],
     opening: Opening {
-        panels: &["flat", "scores", "looks"],
-        params: &["called"],
+        panels: &["flat", "scores"],
+        params: &[],
         buttons: &["play", "step", "reset"],
     },
     params: PARAMS,

@@ -76,7 +76,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     ],
     opening: Opening {
         panels: &["map", "scores"],
-        params: &["laps"],
+        params: &[],
         buttons: &["play", "step", "reset"],
     },
     params: PARAMS,

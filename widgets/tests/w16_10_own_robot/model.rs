@@ -514,7 +514,7 @@ fn what_could_not_be_fetched_is_told_once_and_no_file_is_blamed() {
         .flat_map(|panel| panel.layers);
     let words: Vec<String> = words
         .filter_map(|layer| match layer {
-            Layer::Text { text, .. } => Some(text),
+            Layer::Question(words) => Some(words),
             _ => None,
         })
         .collect();

@@ -24,7 +24,7 @@ fn the_basin_map_has_a_band_at_each_spacing() {
             "1 one post off",
             "2 two posts off or more",
             "F another false minimum",
-            "S stopped before it converged"
+            "S not converged"
         ]
     );
 }

@@ -281,17 +281,17 @@ fn the_name_of_a_method_stands_nearest_to_its_own_mark() {
             let shown = methods_and_names(&with(&[("share", share), ("moved-y", moved_y)]));
             let (marks, names): (Vec<_>, Vec<_>) = shown.into_iter().unzip();
             for (own, [x, y]) in names.into_iter().enumerate() {
-                // From a line of text, half as wide as Huber's name.
+                // From a line of text, half as wide as Huber's name at 14 px.
                 let away = |[left, top]: [f32; 2]| {
-                    let aside = ((left - x).abs() - 13.0).max(0.0);
+                    let aside = ((left - x).abs() - 20.0).max(0.0);
                     aside.hypot((top - y).abs())
                 };
                 let nearest = marks
                     .iter()
                     .map(|mark| away(*mark))
                     .fold(f32::MAX, f32::min);
-                // 3 px: marks that touch. 48 px, three lines of text: a name with its leader is still beside its mark.
-                let is_own = away(marks[own]) <= nearest + 3.0 && away(marks[own]) < 48.0;
+                // 3 px: marks that touch. 51 px, three lines of text: a name with its leader is still beside its mark.
+                let is_own = away(marks[own]) <= nearest + 3.0 && away(marks[own]) < 51.0;
                 assert!(
                     is_own,
                     "{own} at {share} %, {moved_y} m: {marks:?}, {x}, {y}"

@@ -16,7 +16,7 @@ const SLACK: f32 = 1.0;
 /// Reports every text outside of the panels' layers that leaves the picture or overlaps another one, at that
 /// width.
 ///
-/// Text widths are those of the widest common font, so a picture without faults has none in narrower fonts.
+/// Text widths are rounded up from the page's own font.
 #[must_use]
 pub fn text_faults(model: &dyn Model, view: View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();

@@ -30,6 +30,10 @@ pub fn panel(
     theme: Theme,
 ) {
     let transform = transform(panel, layout, origin, window);
+    if let Some(words) = panel.question() {
+        frame::question(surface, words, &transform.plot(), theme);
+        return;
+    }
     frame::back(surface, panel, &transform, theme);
     let plot = transform.plot();
     surface.clip(Some(plot));

@@ -57,7 +57,7 @@ fn numbers_are_finite(layer: &Layer) -> bool {
     let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
     match layer {
         Layer::Points { points, .. } => finite(points.as_flattened()),
-        Layer::Line { .. } => true,
+        Layer::Line { .. } | Layer::Question(_) => true,
         Layer::Segments { segments, .. } => finite(segments.as_flattened().as_flattened()),
         Layer::Walls(walls) => finite(walls.as_flattened().as_flattened()),
         Layer::Seen { from, points, .. } => finite(from) && finite(points.as_flattened()),

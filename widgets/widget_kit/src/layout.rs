@@ -18,11 +18,11 @@ use crate::surface::{Measure, PxRect, TextSize};
 use crate::ticks::{Scale, Ticks};
 
 /// Height of a row of small text.
-pub const ROW: f32 = 17.0;
+pub const ROW: f32 = 19.0;
 /// Smallest height of a name of a vertical axis.
-const NAME_ROW: f32 = 12.0;
+const NAME_ROW: f32 = 14.0;
 /// Height of a row of the title.
-const TITLE_ROW: f32 = 22.0;
+pub const TITLE_ROW: f32 = 22.0;
 /// Length of a tick plus its distance to the label.
 pub const TICK: f32 = 8.0;
 /// Space between legend entries.
@@ -159,7 +159,8 @@ fn least_height(axis: &Axis) -> f32 {
 }
 
 /// Breaks a text at its spaces into lines of that width; a longer word gets its own line.
-fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -> Vec<String> {
+#[must_use]
+pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
     for word in text.split_whitespace() {

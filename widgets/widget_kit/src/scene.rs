@@ -128,6 +128,8 @@ pub enum Layer {
         /// Width in pixels.
         width_px: f32,
     },
+    /// What a panel asks before the run answers it, in place of everything else: see [`Panel::question`].
+    Question(String),
     /// Walls of a plan by their middle lines, drawn with their thickness on a floor.
     Walls(Vec<[[f64; 2]; 2]>),
     /// What a sensor sees: the area between it and its returns.
@@ -243,16 +245,6 @@ impl Layer {
     #[must_use]
     pub fn label(at: [f64; 2], text: String, clear_px: f32) -> Self {
         Self::Label { at, text, clear_px }
-    }
-
-    /// Words of a question, in place of the answer that the picture holds back.
-    #[must_use]
-    pub fn question(at: [f64; 2], words: &str) -> Self {
-        Self::Text {
-            at,
-            text: words.to_owned(),
-            tone: Tone::Ink,
-        }
     }
 
     /// [`Layer::Pose`].
@@ -467,6 +459,15 @@ impl Panel {
     pub fn is_plan(&self) -> bool {
         let mut layers = self.layers.iter();
         layers.any(|layer| matches!(layer, Layer::Walls(_))) && !self.x.is_drawn()
+    }
+
+    /// The question that it asks until the run answers it.
+    #[must_use]
+    pub fn question(&self) -> Option<&str> {
+        match self.layers.as_slice() {
+            [Layer::Question(words)] => Some(words),
+            _ => None,
+        }
     }
 
     /// The range of both axes.

@@ -97,8 +97,8 @@ impl TextSize {
     #[must_use]
     pub fn px(self) -> f32 {
         match self {
-            TextSize::Small => 12.0,
-            TextSize::Body => 14.0,
+            TextSize::Small => 14.0,
+            TextSize::Body => 15.0,
         }
     }
 }

@@ -195,7 +195,7 @@ fn without_map(own: &OwnRobot) -> Vec<Layer> {
         Stage::Failed => "There is no map yet.",
         _ => "The log is read.",
     };
-    vec![Layer::question(EMPTY.middle(), words)]
+    vec![Layer::Question(words.to_owned())]
 }
 
 fn at(robot: &LogState, keyframe: usize) -> Option<[f64; 2]> {

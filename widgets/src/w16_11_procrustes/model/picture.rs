@@ -45,7 +45,7 @@ pub fn scene(trace: &ProcrustesTrace) -> Scene {
     let mut unchecked = map(panel::MAP_UNCHECKED, "Unchecked", kind, unchecked.theta_rad);
     if trace.asks {
         unchecked.title = "Unchecked: det ?".to_owned();
-        unchecked.layers = vec![Layer::question([0.0, 0.0], "turn or mirror image?")];
+        unchecked.layers = vec![Layer::Question("turn or mirror image?".to_owned())];
     }
     Scene {
         panels: vec![points(trace), curves(trace), aligned, unchecked],
@@ -190,8 +190,7 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
         2.5,
     )];
     if trace.asks {
-        let middle = [0.5 * WHOLE_TURN_DEG, 0.5 * top];
-        layers.push(Layer::question(middle, "whose wave is higher?"));
+        layers = vec![Layer::Question("whose wave is higher?".to_owned())];
     } else {
         layers.push(level(first + second, Stroke::Dotted));
         layers.push(level(first - second, Stroke::Dashed));

@@ -298,7 +298,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     let minima =
         minima.filter(|minimum| *minimum != Minimum::Right && in_the_map(*minimum) == *minimum);
     let legend = minima.filter(|_| !covered).map(|minimum| LegendEntry {
-        label: format!("{} {}", minimum.letter(), minimum.name()),
+        label: format!("{} {}", minimum.letter(), short(minimum)),
         tone: Tone::Class(class(minimum)),
         mark: None,
         stroke: None,
@@ -308,7 +308,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     } else {
         match explorer.mapped_by(of) {
             Some(yours) => format!("Where your {yours} ends"),
-            None => format!("Where it ends, {}", variant_name(of)),
+            None => format!("Where {} ends", variant_name(of)),
         }
     };
     Panel {
@@ -380,4 +380,12 @@ fn paths(explorer: &BasinExplorer) -> Vec<Layer> {
     layers.push(line(own, Tone::Posterior, 2.0));
     layers.push(Layer::points(end, Mark::Square, Tone::Posterior, 4.0));
     layers
+}
+
+/// The name of a minimum in a legend, which is narrow.
+fn short(minimum: Minimum) -> &'static str {
+    match minimum {
+        Minimum::NotConverged => "not converged",
+        other => other.name(),
+    }
 }

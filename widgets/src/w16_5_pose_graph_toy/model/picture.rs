@@ -244,6 +244,9 @@ fn bars(toy: &PoseGraphToy) -> Panel {
         ));
         layers.push(words([x, now + 0.09 * y.max], &short(toy, now)));
     }
+    if toy.step() == 0 {
+        layers = vec![Layer::Question("What will each spring pay?".to_owned())];
+    }
     Panel {
         id: panel::BARS,
         title: "What each spring costs".to_owned(),

@@ -214,11 +214,9 @@ fn bias(moving: &MovingBox) -> Panel {
         2.5,
     )];
     if moving.is_before() {
-        let middle = [0.5 * MAX_SHARE, 0.5 * y.max];
-        layers.push(Layer::question(
-            middle,
-            "which is pulled away, and how far?",
-        ));
+        layers = vec![Layer::Question(
+            "Which is pulled away, and how far?".to_owned(),
+        )];
     } else {
         for (k, line) in lines.into_iter().enumerate() {
             layers.push(Layer::points(line.clone(), MARKS[k], TONES[k], 3.0));

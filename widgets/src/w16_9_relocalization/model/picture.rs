@@ -226,11 +226,9 @@ fn scores(back: &Relocalization) -> Panel {
         1.25,
     ));
     if back.place() == 0 {
-        let below = [0.5 * last, 0.5 * found];
-        layers.push(Layer::question(
-            below,
-            "play: which place fits, and how well?",
-        ));
+        layers = vec![Layer::Question(
+            "Which place fits, and how well?".to_owned(),
+        )];
     }
     Panel {
         id: panel::SCORES,

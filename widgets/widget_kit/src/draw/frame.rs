@@ -2,7 +2,7 @@
 
 use super::marks::mark;
 use super::plan;
-use crate::layout::{PanelLayout, TICK, swatch, x_ticks, y_ticks};
+use crate::layout::{PanelLayout, TICK, TITLE_ROW, swatch, wrap, x_ticks, y_ticks};
 use crate::palette::{Theme, level_color, mix, tone};
 use crate::scene::{Aspect, ColorBar, LegendEntry, Mark, Panel, Stroke, Tone};
 use crate::surface::{Align, Pen, Px, PxRect, Surface, TextSize};
@@ -36,7 +36,24 @@ pub fn back(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: The
     }
 }
 
-/// Border, ticks with labels, names, title, colour bar and legend.
+/// The words of a panel that waits for the run, in the middle of its plot.
+pub fn question(surface: &mut dyn Surface, words: &str, plot: &PxRect, theme: Theme) {
+    let lines = wrap(words, plot.width, TextSize::Body, surface);
+    let [x, middle] = plot.center();
+    let top = middle - 0.5 * TITLE_ROW * (lines.len() as f32 - 1.0);
+    for (k, line) in (0_u8..).zip(&lines) {
+        let at = [x, top + TITLE_ROW * f32::from(k)];
+        surface.text(
+            at,
+            Align::Center,
+            line,
+            TextSize::Body,
+            tone(theme, Tone::Ink),
+        );
+    }
+}
+
+/// Axes, ticks with labels, names, title, colour bar and legend.
 pub fn front(
     surface: &mut dyn Surface,
     panel: &Panel,
@@ -54,7 +71,7 @@ pub fn front(
     if panel.is_plan() {
         plan::scale_bar(surface, to, theme);
     } else if panel.x.is_drawn() || panel.aspect == Aspect::Free {
-        border(surface, to.plot(), Pen::solid(quiet, 1.0));
+        axes(surface, to.plot(), Pen::solid(quiet, 1.0));
     }
     ticks(surface, panel, layout, origin, to, theme);
     if let (Some(bar), Some(y)) = (&panel.color_bar, layout.color_bar_y) {
@@ -68,6 +85,13 @@ pub fn front(
             theme,
         );
     }
+}
+
+/// The left and the lower edge of a plot.
+fn axes(surface: &mut dyn Surface, plot: PxRect, pen: Pen) {
+    let (left, right) = (surface.snap(plot.left), surface.snap(plot.right()));
+    let (top, bottom) = (surface.snap(plot.top), surface.snap(plot.bottom()));
+    surface.line(&[[left, top], [left, bottom], [right, bottom]], pen);
 }
 
 fn border(surface: &mut dyn Surface, plot: PxRect, pen: Pen) {

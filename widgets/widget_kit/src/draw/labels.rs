@@ -8,7 +8,7 @@ use crate::surface::{Pen, Px, PxRect, Surface, TextSize};
 use crate::transform::Transform;
 
 /// Height of a line of small text with its margin.
-const LINE: f32 = 15.0;
+const LINE: f32 = 17.0;
 /// Margin between the text and its neighbours.
 const ROOM: f32 = 3.0;
 /// Candidate positions, as multiples of half the text's size: above and below the point, then beside it.
@@ -98,7 +98,8 @@ fn place(
         })
     };
     let on_it = (clear_px == 0.0).then_some(at);
-    let around_it = (0..=MAX_LINES).flat_map(|lines| reach(f32::from(lines) * LINE));
+    let around_it =
+        (0..=4 * MAX_LINES).flat_map(|quarters| reach(0.25 * f32::from(quarters) * LINE));
     let mut free = on_it.into_iter().chain(around_it).filter_map(|middle| {
         let place = within(around(middle, width), plot)?;
         let covers = place.contains(at) && clear_px > 0.0;

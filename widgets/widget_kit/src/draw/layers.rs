@@ -52,6 +52,8 @@ pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Th
                 surface.line(&[to.to_px(*a), to.to_px(*b)], pen);
             }
         }
+        // The frame draws it, because it is all that its panel shows.
+        Layer::Question(_) => {}
         Layer::Walls(walls) => plan::walls(surface, walls, to, theme),
         Layer::Seen {
             from,

@@ -61,6 +61,11 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
         layers.extend(lens(landscape, &ground, ground[step], [far, high + sky]));
     }
     layers.push(Layer::label(flag[1], "truth".to_owned(), 6.0));
+    if step == 0 && landscape.ball.steps() > 0 {
+        layers = vec![Layer::Question(
+            "How deep is the pit it stops in?".to_owned(),
+        )];
+    }
     Panel {
         id: "path",
         title,
@@ -127,7 +132,7 @@ fn lens(
     let times = magnified / 100.0;
     layers.push(Layer::Text {
         at: [0.5 * far, ceiling + 0.5 * (1.0 - LENS_TOP) * top],
-        text: format!("its dent, magnified {times:.0} times"),
+        text: format!("its dent, {times:.0} ×"),
         tone: Tone::Ink,
     });
     layers
