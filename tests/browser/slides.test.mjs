@@ -162,7 +162,7 @@ const faults = (tab) => tab.evaluate(() => {
 });
 
 /** The smallest labels of a picture by the width of the screen: those of questions have less room. */
-const LEAST_LABEL_PX = { 1280: 13, 1920: 22 };
+const LEAST_LABEL_PX = { 1280: 14, 1920: 24 };
 
 it('slides.html has each slide on the screen of a projector, nothing cut, in letters of 24 pixels', async () => {
   await visit('', async (tab) => {
@@ -180,7 +180,7 @@ it('slides.html has each slide on the screen of a projector, nothing cut, in let
         await h.quiet(tab);
         wrong.push(...(await faults(tab)).map((fault) => `${k} ${title}, ${width}×${height}: ${fault}`));
         if (hasWidget) {
-          const label = await tab.evaluate((name) => 12 * document.querySelector(name).shadowRoot.querySelector('[data-type]').dataset.type, css);
+          const label = await tab.evaluate((name) => 14 * document.querySelector(name).shadowRoot.querySelector('[data-type]').dataset.type, css);
           if (label < LEAST_LABEL_PX[width]) wrong.push(`${k} ${title}, ${width}×${height}: labels of ${label} pixels`);
         }
       }

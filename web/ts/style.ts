@@ -82,9 +82,13 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .tools { grid-area: tools; }
 .verdict { grid-area: verdict; min-height: 4.2em; }
 @container (width >= 30rem) {
-  .controls { grid-template: "transport first" "verdict tools" / minmax(0, 1fr) auto; row-gap: 0.4rem; }
-  .controls:not(:has(.first > :not([hidden]))) .transport { grid-column: 1 / -1; }
-  .first .name { flex: 1 0 100%; color: var(--soft); font-size: 0.875rem; }
+  /* Two rows: no two of these have room beside each other. */
+  .controls { display: flex; flex-wrap: wrap; row-gap: 0.4rem; }
+  :is(.transport, .verdict) { flex: 1 1 55%; min-width: 0; }
+  .tools { order: 1; }
+  .first { align-self: center; }
+  .first .control { flex-wrap: nowrap; }
+  .first .name { flex: none; }
 }
 @container (width < 30rem) {
   .controls { row-gap: 0.1rem; padding-block: 0.2rem 0.25rem; }

@@ -7,7 +7,7 @@ use crate::w16_1_basin_explorer::model::panel;
 
 /// Height of a map beside the sweeps: both maps together are as high as the sweeps alone, so nothing jumps as they
 /// enter. The first is for a picture below [`NARROW_PX`], where their keys take a row more.
-const BESIDE_PX: [f32; 2] = [74.0, 95.0];
+const BESIDE_PX: [f32; 2] = [76.5, 95.0];
 const NARROW_PX: f32 = 600.0;
 /// Height of the sweeps on a phone, alone and above a map: both are equally high with it.
 const PHONE_PX: [f32; 2] = [500.0, 214.0];
