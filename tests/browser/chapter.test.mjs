@@ -119,6 +119,7 @@ describe('the chapter', () => {
       await tab.waitForFunction(([name, old]) => document.querySelector(name).heading !== old, [css, before.heading]);
       const turned = await value();
       assert.equal(turned.dx, before.dx);
+      await tab.locator(`${css} #control-more`).click();
 
       const [left, top] = await cloudSpot(tab, css);
       await tab.mouse.move(left, top);

@@ -141,7 +141,7 @@ describe('values', () => {
   });
 
   it('that are invalid are reported once, and the note disappears when they are valid', async () => {
-    await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
+    await on('<slam-widget name="w16.1" more="on"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const field = tab.getByRole('spinbutton', { name: 'Heading' });
       const note = () => tab.locator('slam-widget .note').innerText();
@@ -163,7 +163,7 @@ describe('values', () => {
   });
 
   it('that change while the reader types do not overwrite the input before it is set or loses focus', async () => {
-    await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
+    await on('<slam-widget name="w16.1" more="on"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const field = tab.getByRole('spinbutton', { name: 'Heading' });
       const heading = () => tab.evaluate(() => document.querySelector('slam-widget').heading);

@@ -36,11 +36,13 @@ async function spot(tab, css, drags) {
 }
 
 /** Half the width of the thumb of a slider, px. */
-const THUMB_PX = 8;
+const THUMB_PX = 9;
 
-/** The range of the middle of a slider's thumb on the screen. */
+/** The range of the middle of a slider's thumb on the screen; opens More if the slider is there. */
 export async function sliderRail(tab, parameter, css = 'slam-widget') {
   const slider = tab.locator(`${css} #control-${parameter}`);
+  if (await slider.isHidden()) await tab.locator(`${css} #control-more`).click();
+  await slider.waitFor();
   await slider.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await slider.boundingBox();
   return { x: x + THUMB_PX, y: y + height / 2, width: width - 2 * THUMB_PX };

@@ -447,7 +447,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     opening: Opening {
         panels: &["map"],
         params: &["show"],
-        buttons: &["play", "edit-flat"],
+        buttons: &["play"],
     },
     params: PARAMS,
     buttons: &buttons::<{ count(BUTTONS) }>(BUTTONS),

@@ -111,6 +111,7 @@ pub struct BoxScene {
     map: DenseMap,
     source: PointCloud,
     boxes: [[Point2<f64>; 4]; 2],
+    walls: Vec<[Point2<f64>; 2]>,
 }
 
 impl BoxScene {
@@ -136,6 +137,7 @@ impl BoxScene {
             target,
             source,
             boxes: [outline(before), outline(after)],
+            walls: scenes::walls_seen_from(&World::apartment(), &world_from_target),
         }
     }
 
@@ -144,6 +146,12 @@ impl BoxScene {
     pub fn truth() -> SE2 {
         let (x, y, theta) = TRUTH;
         SE2::new(x, y, theta)
+    }
+
+    /// The walls in the frame of the target's sensor, as pictures draw them.
+    #[must_use]
+    pub fn walls(&self) -> &[[Point2<f64>; 2]] {
+        &self.walls
     }
 
     /// The sweep before the move, in its sensor's frame.

@@ -31,6 +31,13 @@ pub fn long_corridor() -> World {
     World::new(bounds, vec![wall(south_m), wall(north_m)])
 }
 
+/// The walls of a world in the frame of a sensor, as pictures draw them.
+pub fn walls_seen_from(world: &World, world_from_sensor: &SE2) -> Vec<[Point2<f64>; 2]> {
+    let sensor_from_world = world_from_sensor.inverse();
+    let ends = |wall: &Wall| [wall.start, wall.end].map(|end| sensor_from_world.transform(end));
+    world.walls().iter().map(ends).collect()
+}
+
 /// Radius of the normals of a scene's points, m.
 pub const NORMAL_RADIUS_M: f64 = 0.3;
 

@@ -1,6 +1,6 @@
 //! The panels: the two sweeps, the two basin maps, the curve over the iterations.
 
-use ch16_lab::basin::{BasinScene, Minimum, OffsetAxis};
+use ch16_lab::basin::{Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
 use pr_geom::{Point2, SE2, math};
@@ -18,6 +18,7 @@ use super::turns::arc;
 use super::{BasinExplorer, panel};
 use crate::sweep_bounds::sweep_bounds;
 use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase, TAU};
+use crate::xy::walls;
 
 /// One point in this many leaves a trail.
 const POINTS_PER_TRAIL: usize = 11;
@@ -58,7 +59,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     let alone = lonely(&source, &links);
 
     let mut layers = vec![
-        walls(scene),
+        walls(scene.walls()),
         Layer::Seen {
             from: [pose.x(), pose.y()],
             points: positions(&source),
@@ -182,12 +183,6 @@ pub fn frame(explorer: &BasinExplorer) -> [Axis; 2] {
     // In steps of half a metre, so that a start beside the last one has the same axes.
     sweep_bounds(scene, &sensors, Some(&explorer.run.outcome.pose))
         .map(|[low, high]| Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0))
-}
-
-/// The walls of the scene.
-fn walls(scene: &BasinScene) -> Layer {
-    let walls = scene.walls().iter();
-    Layer::Walls(walls.map(|wall| wall.map(|end| [end.x, end.y])).collect())
 }
 
 /// The pairs as threads, the warmest as long as a pair may be.

@@ -15,7 +15,7 @@ use super::interaction::turn_handle;
 use super::texts::grouped;
 use super::{WholeWindow, panel};
 use crate::sweep_bounds::sweep_bounds;
-use crate::xy::xy;
+use crate::xy::{walls, xy};
 
 /// Space around the sweeps, m.
 const MARGIN_M: f64 = 0.1;
@@ -31,11 +31,9 @@ fn sweeps(window: &WholeWindow) -> Panel {
     let guess = window.guess();
     let pose = window.shown_pose();
     let turn = turn_handle(&guess);
-    let walls = scene.walls().iter();
-    let walls = walls.map(|wall| wall.map(|end| [end.x, end.y])).collect();
     let best = scene.source().transformed(&pose);
     let mut layers = vec![
-        Layer::Walls(walls),
+        walls(scene.walls()),
         Layer::Seen {
             from: xy(&pose),
             points: best.iter().map(|point| [point.x, point.y]).collect(),

@@ -12,7 +12,7 @@ use widget_kit::scene::{
 use super::curves::SEEDS;
 use super::{MovingBox, panel, settings};
 use crate::w16_8_moving_box::spec::{MAX_SHARE, SHARE};
-use crate::xy::xy;
+use crate::xy::{walls, xy};
 
 /// Tones and marks of the methods.
 const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
@@ -50,6 +50,7 @@ fn room(moving: &MovingBox) -> Panel {
     };
     let [before, after] = scene.boxes();
     let mut layers = vec![
+        walls(scene.walls()),
         outline(before, Stroke::Dotted, 1.5),
         outline(after, Stroke::Solid, 3.0),
         points(scene.target(), Mark::Cross, Tone::Measurement),

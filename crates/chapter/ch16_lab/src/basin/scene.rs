@@ -1,7 +1,7 @@
 //! Two sweeps of one location and the registration from a start.
 
 use pr_geom::{Point2, SE2};
-use pr_sim::{Lidar, LidarConfig, Rng, Wall, World};
+use pr_sim::{Lidar, LidarConfig, Rng, World};
 use serde::Serialize;
 
 use super::{BasinOutcome, BasinPlace, fence};
@@ -139,14 +139,7 @@ impl BasinScene {
             target,
             source,
             truth: world_from_target.between(&world_from_source),
-            walls: {
-                let target_from_world = world_from_target.inverse();
-                let ends = |wall: &Wall| [wall.start, wall.end];
-                let walls = world.walls().iter().map(ends);
-                walls
-                    .map(|wall| wall.map(|end| target_from_world.transform(end)))
-                    .collect()
-            },
+            walls: scenes::walls_seen_from(world, &world_from_target),
         }
     }
 
