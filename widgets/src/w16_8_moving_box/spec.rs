@@ -21,7 +21,7 @@ params! {
     pub(super) static METHOD: OneOf<usize> = one_of!(
         usize,
         "method",
-        "registered",
+        "registration",
         &[
             (0, "plain", "plain"),
             (1, "trimmed", "trimmed"),

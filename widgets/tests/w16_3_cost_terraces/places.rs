@@ -435,7 +435,7 @@ fn ndts_colour_bar_runs_from_the_highest_score_which_is_dark_to_none() {
         panel.color_bar.unwrap()
     };
     assert!(bar(0.0).min > 0.5 && bar(0.0).max == 0.0, "{:?}", bar(0.0));
-    assert_eq!(bar(1.0).label, "% fit better");
+    assert_eq!(bar(1.0).label, "% are better");
 }
 
 #[test]

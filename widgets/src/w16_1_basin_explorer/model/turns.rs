@@ -4,6 +4,7 @@ use ch16_lab::basin::{BasinScene, BasinStart, Minimum};
 use ch16_slam2d::icp::IcpWorkspace;
 use widget_kit::model::Activity;
 use widget_kit::scene::{Layer, Stroke, Tone};
+use widget_kit::ticks::signed;
 use widget_kit::values::Values;
 
 use super::BasinExplorer;
@@ -72,11 +73,13 @@ pub fn arc(explorer: &BasinExplorer) -> Vec<Layer> {
     };
     let ends = explorer.turns.0.iter().enumerate();
     let right = ends.filter(|(_, minimum)| **minimum == Minimum::Right);
+    let right: Vec<_> = right.map(|(turn, _)| turn).collect();
     let arcs: Vec<_> = right
-        .map(|(turn, _)| [-0.5, 0.5].map(|side| at(heading_deg(turn) + side * STEP_DEG)))
+        .iter()
+        .map(|turn| [-0.5, 0.5].map(|side| at(heading_deg(*turn) + side * STEP_DEG)))
         .collect();
     let middle = arcs.get(arcs.len() / 2);
-    let word = middle.map(|arc| Layer::label(arc[0], "gets home".to_owned(), CLEAR_PX));
+    let word = middle.map(|arc| Layer::label(arc[0], home(&right), CLEAR_PX));
     // Its colour, that of the basin map, is too light without an outline.
     let arc = |tone, width_px| Layer::segments(arcs.clone(), Stroke::Solid, tone, width_px);
     let arc = [
@@ -84,4 +87,15 @@ pub fn arc(explorer: &BasinExplorer) -> Vec<Layer> {
         arc(Tone::Class(0), WIDTH_PX),
     ];
     word.into_iter().chain(arc).collect()
+}
+
+/// The turns that end right in words, with their range if it has no gap.
+fn home(right: &[usize]) -> String {
+    match right {
+        [first, .., last] if last - first + 1 == right.len() => {
+            let [low, high] = [*first, *last].map(|turn| signed(heading_deg(turn), 0));
+            format!("home from {low}° to {high}°")
+        }
+        _ => "gets home".to_owned(),
+    }
 }

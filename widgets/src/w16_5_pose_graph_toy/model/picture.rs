@@ -7,6 +7,8 @@ use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
+use crate::xy::xy;
+
 use super::interaction::{bow_m, turn_handle};
 use super::{PoseGraphToy, panel};
 
@@ -47,11 +49,8 @@ fn graph(toy: &PoseGraphToy) -> Panel {
     ];
     if toy.step() > 0 {
         layers.extend(trails(toy));
-        layers.extend(
-            start
-                .iter()
-                .map(|pose| Layer::pose(pose.to_array(), Mark::Circle, Tone::Prior, 6.0)),
-        );
+        let before = start.iter().map(xy).collect();
+        layers.push(Layer::points(before, Mark::Circle, Tone::Prior, 5.0));
         legend.push(LegendEntry::mark("before", Tone::Prior, Mark::Circle));
     }
     let mut costs = Vec::new();

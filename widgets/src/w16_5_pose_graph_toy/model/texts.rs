@@ -58,9 +58,15 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
             shown.chi2
         )
     } else {
+        let [was, is] = [before.chi2, shown.chi2].map(|chi2| format!("{chi2:.3}"));
+        let change = if was == is {
+            format!("leaves χ² at {is}")
+        } else {
+            format!("takes χ² from {was} to {is}")
+        };
         format!(
-            "step {step} of {last} takes χ² from {:.3} to {:.3}. It moves a pose by {:.2} m + rad at most; {worst}",
-            before.chi2, shown.chi2, shown.moved
+            "step {step} of {last} {change}. It moves a pose by {:.2} m + rad at most; {worst}",
+            shown.moved
         )
     };
     let floats = if is_pinned(toy) {

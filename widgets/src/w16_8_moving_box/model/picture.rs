@@ -61,7 +61,7 @@ fn room(moving: &MovingBox) -> Panel {
         ),
     ];
     let title = if moving.is_before() {
-        "Two sweeps of a room: the box moved in between".to_owned()
+        "Two sweeps, and a box that moved".to_owned()
     } else {
         let larger = add_pulls(moving, &mut layers);
         add_errors(moving, &mut layers);
@@ -225,16 +225,14 @@ fn bias(moving: &MovingBox) -> Panel {
         }
     }
     let progress = if curves.progress() < 1.0 {
-        format!(
-            ", {:.0}% of {SEEDS} trials",
-            (100.0 * curves.progress()).floor()
-        )
+        let done = (curves.progress() * SEEDS as f64).floor();
+        format!("{done:.0} of {SEEDS}")
     } else {
-        format!(" over {SEEDS} trials")
+        SEEDS.to_string()
     };
     Panel {
         id: panel::BIAS,
-        title: format!("Mean pull{progress}"),
+        title: format!("Mean pull over {progress} trials"),
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new("points on the box (%)", 0.0, MAX_SHARE),

@@ -232,7 +232,7 @@ fn scores(back: &Relocalization) -> Panel {
     }
     Panel {
         id: panel::SCORES,
-        title: "How well the best place fits, and the next one".to_owned(),
+        title: "Fit of the two best places".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new("scan", 0.0, last + 1.0),

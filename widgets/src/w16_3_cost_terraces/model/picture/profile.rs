@@ -44,7 +44,7 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
     let sky = SKY * high;
     let flag = [[length_m, 0.0], [length_m, highest + 0.25 * sky]];
     let title = if step < landscape.ball.steps() {
-        "The ground from the drop to the truth".to_owned()
+        "From drop to truth".to_owned()
     } else if landscape.ball.is_home() {
         format!("{}’s ball is home", name(moment.measure))
     } else {
@@ -132,7 +132,7 @@ fn lens(
     let times = magnified / 100.0;
     layers.push(Layer::Text {
         at: [0.5 * far, ceiling + 0.5 * (1.0 - LENS_TOP) * top],
-        text: format!("its dent, {times:.0} ×"),
+        text: format!("dent enlarged ×{times:.0}"),
         tone: Tone::Ink,
     });
     layers

@@ -29,7 +29,7 @@ pub fn panel(
             )
         }
         Looked::CrossHair | Looked::Ball => {
-            format!("How well each shift fits: {}", name(moment.measure))
+            format!("{}: the darker, the better it fits", name(moment.measure))
         }
     };
     let path = &landscape.ball.path_m;
@@ -82,7 +82,7 @@ pub fn panel(
 fn color_bar(terrains: &Terrains, moment: PictureState) -> ColorBar {
     let [low, high] = terrains.of(moment.measure).range;
     let (label, min, max) = match (moment.colors, moment.measure) {
-        (Colors::ByRank, _) => ("% fit better", 0.0, 100.0),
+        (Colors::ByRank, _) => ("% are better", 0.0, 100.0),
         (Colors::ByHeight, ReliefMeasure::Icp) => ("m²", low, high),
         // From the highest score, which is dark, to the lowest.
         (Colors::ByHeight, ReliefMeasure::Ndt) => ("score", -low, -high),
