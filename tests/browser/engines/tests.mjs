@@ -132,15 +132,20 @@ export function testIn(name, open, problem) {
       assert.equal(modules.length, 1, modules.join(' '));
     });
 
-    test('a page of the chapter in a sandbox runs its lap and its widgets', async () => {
-      await page.goto(`${server.url}/sandbox.html`);
-      await ask(page, (src) => {
-        addEventListener('message', ({ data }) => { if (data?.ready) window.framed = data; });
-        document.querySelector('iframe').src = src;
-      }, '/index.html?w=16.1');
-      const framed = await until(page, () => window.framed);
-      assert.deepEqual(framed, { ready: 'w16.1', hasLap: true, troubles: [] });
-    });
+    for (const [what, path, expected] of [
+      ['a page of the chapter in a sandbox runs its lap and its widgets', '/index.html?w=16.1', { ready: 'w16.1', hasLap: true }],
+      ['a slide in a sandbox runs its widget', slideOf('w16.1'), { ready: 'w16.1', hasLap: false }],
+    ]) {
+      test(what, async () => {
+        await page.goto(`${server.url}/sandbox.html`);
+        await ask(page, (src) => {
+          addEventListener('message', ({ data }) => { if (data?.ready) window.framed = data; });
+          document.querySelector('iframe').src = src;
+        }, path);
+        const framed = await until(page, () => window.framed);
+        assert.deepEqual(framed, { ...expected, troubles: [] });
+      });
+    }
 
     test('a frame in a sandbox runs a widget, and maps the sample', async () => {
       await page.goto(`${server.url}/sandbox.html`);
@@ -208,6 +213,12 @@ export function testIn(name, open, problem) {
       }
     });
   });
+}
+
+/** The address of a widget's slide. */
+function slideOf(id) {
+  const slides = readFileSync(join(h.DIST, 'slides.html'), 'utf8').split('<section ').slice(1);
+  return `/slides.html#${slides.findIndex((slide) => slide.startsWith('class="figure"') && slide.includes(`name="${id}"`)) + 1}`;
 }
 
 /** Presses the sample of w16.10 and waits for its map. */
