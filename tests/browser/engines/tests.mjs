@@ -27,8 +27,11 @@ const PAGES = {
   '/clean.html': '<!doctype html><meta charset="utf-8"><title>Another page</title><a href="widgets.html">Back</a>',
 };
 
-/** Serves the site; each page records its errors, the server the files that it has not. */
-async function serve(missing, modules) {
+/**
+ * Serves the site; each page records its errors, the server the files that it has not. While `half.wanted`, the first half of
+ * a module is sent, and `half.sent` resolves.
+ */
+async function serve(missing, modules, half) {
   const answer = (pathname, response) => {
     if (pathname === WATCH) {
       response.setHeader('Content-Type', 'text/javascript');
@@ -36,6 +39,13 @@ async function serve(missing, modules) {
       return true;
     }
     if (pathname.endsWith('.wasm')) modules.push(pathname);
+    if (pathname.endsWith('.wasm') && half.wanted !== undefined) {
+      const bytes = readFileSync(join(h.DIST, pathname));
+      response.setHeader('Content-Type', 'application/wasm');
+      response.setHeader('Content-Length', bytes.length);
+      response.write(bytes.subarray(0, bytes.length / 2), half.wanted);
+      return true;
+    }
     const isPage = pathname.endsWith('.html') && pathname !== '/your-code.html';
     if (!isPage) {
       response.on('finish', () => response.statusCode === 404 && pathname !== '/favicon.ico' && missing.push(pathname));
@@ -55,11 +65,12 @@ export function testIn(name, open, problem) {
     let server;
     const missing = [];
     const modules = [];
+    const half = { wanted: undefined };
     const why = problem();
 
     before(async () => {
       if (why !== undefined) return;
-      server = await serve(missing, modules);
+      server = await serve(missing, modules, half);
       page = await open();
       await page.resize(1100, 900);
     });
@@ -194,6 +205,23 @@ export function testIn(name, open, problem) {
       await live(page, 'w16.1');
       assert.equal(await ask(page, () => document.querySelector('slam-widget[name="w16.1"]').heading), 30);
       await isClean();
+    });
+
+    test('who leaves while the module arrives returns to a page whose widgets run', async () => {
+      const sent = new Promise((resolve) => { half.wanted = resolve; });
+      await visit('/widgets.html');
+      await sent;
+      await until(page, () => document.querySelector('slam-widget').shadowRoot.querySelector('progress').value > 0);
+      half.wanted = undefined;
+      // WebKit keeps the page both times: without what it was fetching, and as it ran.
+      for (const left of ['while the module arrives', 'while it runs']) {
+        await page.goto(`${server.url}/clean.html`);
+        await page.back();
+        await loaded(page);
+        await live(page, 'w16.1');
+        await followsKeyboard(page, { id: 'w16.1' });
+        assert.deepEqual(await troublesOf(page), [], left);
+      }
     });
 
     test('the offline site opens from the disk, runs a widget, and maps the sample', async () => {
