@@ -280,6 +280,30 @@ describe('the chapter', () => {
     }, { viewport: { width: 390, height: 600 } });
   });
 
+  for (const id of ['w16.6', 'w16.12']) {
+    it(`shows the whole verdict on a phone after Play, though it has grown at the bottom of the screen: ${id}`, async () => {
+      const css = widget(id);
+      await visit('', async (tab) => {
+        await h.withoutLaps(tab);
+        await h.ready(tab, css);
+        await h.quiet(tab);
+        // The page scrolls to the addressed widget until the first input.
+        await tab.keyboard.press('Shift');
+        const verdict = tab.locator(`${css} .verdict`);
+        const before = await verdict.evaluate(({ offsetHeight }) => offsetHeight);
+        await verdict.evaluate((line) => scrollBy({ top: line.getBoundingClientRect().bottom - innerHeight, behavior: 'instant' }));
+        await tab.locator(`${css} [data-control="play"]`).tap();
+        await tab.waitForFunction((name) => document.querySelector(name).shadowRoot.querySelector('[data-control="play"]').textContent !== 'Pause', css);
+        await h.quiet(tab);
+        const seen = await verdict.evaluate((line) => {
+          const { bottom, left } = line.lastElementChild.getBoundingClientRect();
+          return { height: line.offsetHeight, bottom, isOnTop: document.elementFromPoint(left + 5, bottom - 5) === line.getRootNode().host };
+        });
+        assert.ok(seen.height > before && seen.bottom <= 844 && seen.isOnTop, `from ${before} px, ${JSON.stringify(seen)}`);
+      }, { path: `${h.pageOf(id)}?w=${id.slice(1)}`, options: { viewport: { width: 390, height: 844 }, hasTouch: true } });
+    });
+  }
+
   it('shows at most ten numbers per screen outside of the exercises', async () => {
     await reading(async (tab) => {
       const places = await tab.evaluate(() => {

@@ -32,14 +32,16 @@ describe('a browser without', () => {
     MathML: 'delete window.MathMLElement',
     ':has': 'CSS.supports = () => false',
   })) {
-    it(`${feature} is told on a page of the chapter which browsers have everything`, async () => {
-      await visit('', async (tab) => {
-        const line = tab.getByRole('status').filter({ hasText: `Everything works in ${oldestBrowsers()}, or a later version.` });
-        await line.waitFor();
-        const { y } = await line.boundingBox();
-        assert.ok(y < 200, `${y}`);
-      }, { ...without(script, 'reference.html'), quiet: false });
-    });
+    for (const [what, page] of [['a page of the chapter', 'reference.html'], ['the slides', 'slides.html']]) {
+      it(`${feature} is told on ${what} which browsers have everything`, async () => {
+        await visit('', async (tab) => {
+          const line = tab.getByRole('status').filter({ hasText: `Everything works in ${oldestBrowsers()}, or a later version.` });
+          await line.waitFor();
+          const { y } = await line.boundingBox();
+          assert.ok(y < 200, `${y}`);
+        }, { ...without(script, page), quiet: false });
+      });
+    }
   }
 
   it('nothing of that sees no such sentence', async () => {

@@ -314,6 +314,59 @@ describe('a start that is broken', () => {
   }
 });
 
+describe('a start that hangs', () => {
+  const arrived = (tab) => tab.waitForFunction(() => document.querySelector('slam-widget')?.shadowRoot?.querySelector('progress')?.value === 1);
+  const hasCanvas = (tab) => tab.locator('slam-widget .stage.waiting canvas').waitFor({ state: 'attached' });
+  const HANGING = {
+    'in the compiler': [
+      'WebAssembly.compileStreaming = async (response) => { await (await response).arrayBuffer(); return new Promise(() => {}); }',
+      /drawn nothing yet: the browser has not compiled its program/,
+    ],
+    'at the start of the program': ['WebAssembly.instantiate = () => new Promise(() => {})', /drawn nothing yet: the browser has not compiled its program/],
+    'for its first frame': ['window.requestAnimationFrame = () => 1', /drawn nothing yet: the browser renders no frames/, hasCanvas],
+  };
+  for (const [where, [script, reason, lastSign = arrived]] of Object.entries(HANGING)) {
+    it(`${where} is told about ten seconds after the last sign of life`, async () => {
+      await on(ONE, async (tab) => {
+        await lastSign(tab);
+        await tab.evaluate(() => frameClock.skip(9_900));
+        assert.equal(await failure(tab).count(), 0);
+        await tab.evaluate(() => frameClock.skip(1_200));
+        await fallsBack(tab, reason);
+      }, { head: `<script>${script}</script>` });
+    });
+  }
+
+  it('by a slow line is not told while the program arrives', async () => {
+    const bytes = readFileSync(join(h.DIST, WASM));
+    const PARTS = 5;
+    let line;
+    const send = (part) => line.write(bytes.subarray(part * bytes.length / PARTS, (part + 1) * bytes.length / PARTS));
+    const server = {
+      answer: (path, response) => {
+        if (!path.endsWith('.wasm')) return false;
+        response.setHeader('Content-Type', 'application/wasm');
+        response.setHeader('Content-Length', bytes.length);
+        line = response;
+        send(0);
+        return true;
+      },
+    };
+    await on(ONE, async (tab) => {
+      for (let part = 1; part <= PARTS; part += 1) {
+        await tab.waitForFunction((share) => document.querySelector('slam-widget').shadowRoot?.querySelector('progress')?.value >= share, (part - 0.001) / PARTS);
+        if (part === PARTS) break;
+        await tab.evaluate(() => frameClock.skip(9_000));
+        assert.equal(await failure(tab).count(), 0);
+        send(part);
+      }
+      line.end();
+      await h.ready(tab);
+      assert.equal(await failure(tab).count(), 0);
+    }, { server });
+  });
+});
+
 it('a widget starts without the exact size of its canvas, which no Safari has', async () => {
   await on(ONE, (tab) => h.ready(tab), { head: '<script>delete ResizeObserverEntry.prototype.devicePixelContentBoxSize</script>' });
 });

@@ -19,7 +19,9 @@ if (!CSS.supports('selector(:has(a))') || !NEEDED.every(([owner, name]) => name 
     line.className = 'older';
     line.setAttribute('role', 'status');
     line.textContent = `This browser is older than the page needs: some figures do not move. Everything works in ${BROWSERS}, or a later version.`;
-    document.querySelector('.bar')?.after(line);
+    const bar = document.querySelector('.bar');
+    if (bar === null) document.body.prepend(line);
+    else bar.after(line);
   });
 }
 document.documentElement.dataset['script'] = 'on';

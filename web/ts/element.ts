@@ -11,6 +11,7 @@ import { create, listen, upgradeProperties } from './dom';
 import { exportMenu } from './export';
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
+import { keepEndInView } from './keep-in-view';
 import { Lifecycle, RemovedError, type LifecycleHost } from './lifecycle';
 import { LoadError } from './module';
 import { Notifier } from './notifier';
@@ -356,7 +357,11 @@ export class SlamWidget extends HTMLElement {
     this.#controls = new Controls(spec, parts.places, {
       set: (id, text) => this.#tryToSet(id, text),
       text: (id) => this.#state?.text(id) ?? '',
-      press: (id) => void this.press(id).catch((error: unknown) => this.#pressFailed(error)),
+      press: (id) => {
+        void this.press(id).catch((error: unknown) => this.#pressFailed(error));
+        // The verdict of the run has more lines than that before it.
+        if (id === 'play') keepEndInView(parts.frame, parts.verdict);
+      },
       finishRun: () => {
         this.#finishWork();
         this.#showTimeline();

@@ -1,5 +1,5 @@
-// Scrolls an element to the top of the viewport, and repeats that after layout shifts: pictures load and widgets start.
-// Any input of the reader ends it.
+// Scrolls to an element, and repeats that after layout shifts: pictures load, widgets start, verdicts grow. Any input of
+// the reader ends it.
 
 let end: (() => void) | undefined;
 
@@ -9,8 +9,23 @@ const INPUT_EVENTS = ['wheel', 'touchstart', 'pointerdown', 'keydown'];
 /** Smaller movements are rounding. */
 const SLACK_PX = 2;
 
-/** Scrolls at once, and again whenever the page changes its height, until the reader's first input. */
+/** Keeps an element at the top of the viewport. */
 export function keepInView(element: Element): void {
+  // A smooth scroll would miss an element that shifts meanwhile.
+  keep(element, () => element.scrollIntoView({ behavior: 'instant', block: 'start' }));
+}
+
+/** Keeps the end of something in the viewport, if all of it fits there. */
+export function keepEndInView(start: Element, end: Element): void {
+  keep(end, () => {
+    const { bottom } = end.getBoundingClientRect();
+    const fits = bottom - start.getBoundingClientRect().top <= window.innerHeight;
+    if (fits && bottom > window.innerHeight) end.scrollIntoView({ behavior: 'instant', block: 'nearest' });
+  });
+}
+
+/** Scrolls at once, and again whenever the page changes its height, until the reader's first input. */
+function keep(element: Element, scroll: () => void): void {
   end?.();
   const listening = new AbortController();
   const heights = new ResizeObserver(() => align());
@@ -21,8 +36,7 @@ export function keepInView(element: Element): void {
   let alignedPx = 0;
   let pageHeightPx = 0;
   const align = (): void => {
-    // A smooth scroll would miss an element that shifts meanwhile.
-    element.scrollIntoView({ behavior: 'instant', block: 'start' });
+    scroll();
     alignedPx = element.getBoundingClientRect().top;
     pageHeightPx = document.documentElement.scrollHeight;
   };

@@ -1,9 +1,11 @@
 // Notices that a start gets no further. It ends nothing: a slow machine may still draw.
 
+import { STALL_TIMEOUT_MS } from './module';
+
 /** Time without a frame, while the page is visible, after which the reader is told. */
 const PATIENCE_MS = 10_000;
-/** Time without progress of the program's download, which has time limits of its own, and of its compilation. */
-export const ARRIVAL_MS = 20_000;
+/** The same while the program arrives and is compiled: a second after the download's own limit, which names the cause. */
+export const ARRIVAL_MS = STALL_TIMEOUT_MS + 1000;
 
 export class LateStart {
   readonly #tell: (sentence: string | undefined) => void;

@@ -175,7 +175,7 @@ export class Lifecycle implements Visibility, Drawer {
     const generation = this.#generation;
     try {
       stage.classList.add('waiting');
-      this.#lateStart.step('its program has not arrived', ARRIVAL_MS);
+      this.#lateStart.step('the browser has not compiled its program', ARRIVAL_MS);
       const instance = await this.ensureInstance();
       instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
       this.#lateStart.step('its program has not finished its first step');

@@ -34,7 +34,7 @@ export class StaleError extends LoadError {
 const BUILD_ID_SECTION = 'build';
 
 /** Timeout for the response and for each chunk after it. */
-const STALL_TIMEOUT_MS = 10_000;
+export const STALL_TIMEOUT_MS = 10_000;
 
 type Listener = (share: number) => void;
 

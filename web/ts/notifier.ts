@@ -108,11 +108,20 @@ export class Notifier {
   /** Reports a failure, with a button that restarts the widget. */
   failed(error: Error, restart: () => void): void {
     const { note, frame } = this.#parts;
+    const again = (): void => {
+      window.removeEventListener('pageshow', back);
+      box.remove();
+      restart();
+    };
+    // Who leaves ends what the page fetches; the browser may keep the page like that, and return to it.
+    const back = ({ persisted }: PageTransitionEvent): void => {
+      if (persisted && box.isConnected && !(error instanceof CrashError)) again();
+    };
+    window.addEventListener('pageshow', back);
     const box = failureBox(error, () => {
       // The button disappears; without this the focus would move to the document.
       frame.focus({ preventScroll: true });
-      box.remove();
-      restart();
+      again();
     });
     note.append(box);
     const kind = error instanceof CrashError ? 'crash' : 'load';

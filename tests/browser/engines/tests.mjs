@@ -7,10 +7,14 @@ import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import * as h from '../harness.mjs';
+import { native } from '../../native.mjs';
 import { skip } from '../../skip.mjs';
 import { driveOf, robotServer } from '../robot-server.mjs';
 import { unpackOffline } from '../unpacked.mjs';
 import { WATCH, WATCH_TEXT, ask, click, clickButton, clickControl, live, loaded, troublesOf, until, watched } from './page.mjs';
+
+/** Frames of the page in which a widget has heard of a drag that has ended. */
+const FRAMES_AFTER_DRAG = 6;
 
 /** A page with `body`, and one with it in a sandbox. */
 const WIDGETS = h.schema.map(({ id }) => `<div style="padding-bottom: 80vh"><slam-widget name="${id}" more="on"></slam-widget></div>`).join('');
@@ -23,8 +27,11 @@ const PAGES = {
   '/clean.html': '<!doctype html><meta charset="utf-8"><title>Another page</title><a href="widgets.html">Back</a>',
 };
 
-/** Serves the site; each page records its errors, the server the files that it has not. */
-async function serve(missing, modules) {
+/**
+ * Serves the site; each page records its errors, the server the files that it has not. While `half.wanted`, the first half of
+ * a module is sent, and `half.sent` resolves.
+ */
+async function serve(missing, modules, half) {
   const answer = (pathname, response) => {
     if (pathname === WATCH) {
       response.setHeader('Content-Type', 'text/javascript');
@@ -32,6 +39,13 @@ async function serve(missing, modules) {
       return true;
     }
     if (pathname.endsWith('.wasm')) modules.push(pathname);
+    if (pathname.endsWith('.wasm') && half.wanted !== undefined) {
+      const bytes = readFileSync(join(h.DIST, pathname));
+      response.setHeader('Content-Type', 'application/wasm');
+      response.setHeader('Content-Length', bytes.length);
+      response.write(bytes.subarray(0, bytes.length / 2), half.wanted);
+      return true;
+    }
     const isPage = pathname.endsWith('.html') && pathname !== '/your-code.html';
     if (!isPage) {
       response.on('finish', () => response.statusCode === 404 && pathname !== '/favicon.ico' && missing.push(pathname));
@@ -51,11 +65,12 @@ export function testIn(name, open, problem) {
     let server;
     const missing = [];
     const modules = [];
+    const half = { wanted: undefined };
     const why = problem();
 
     before(async () => {
       if (why !== undefined) return;
-      server = await serve(missing, modules);
+      server = await serve(missing, modules, half);
       page = await open();
       await page.resize(1100, 900);
     });
@@ -91,16 +106,18 @@ export function testIn(name, open, problem) {
       }
     });
 
-    test('every widget starts, follows the pointer and the keyboard, plays, and recovers from a lost context', async (context) => {
+    test('every widget starts, follows the pointer and the keyboard, plays, recovers from a lost context, and concludes what it does natively', async (context) => {
       await visit('/widgets.html');
       for (const widget of h.schema) {
         await context.test(widget.id, async () => {
           await ask(page, (id) => document.querySelector(`slam-widget[name="${id}"]`).scrollIntoView(), widget.id);
           await live(page, widget.id);
+          const expected = JSON.parse(native('states', widget.id).trim().split('\n').at(-1));
+          await followsPointer(page, widget.id, expected.timeline.param);
           await followsKeyboard(page, widget);
-          await followsPointer(page, widget);
           await plays(page, widget);
           await recovers(page, widget.id);
+          await concludes(page, widget.id, expected);
         });
       }
       await isClean();
@@ -126,15 +143,20 @@ export function testIn(name, open, problem) {
       assert.equal(modules.length, 1, modules.join(' '));
     });
 
-    test('a page of the chapter in a sandbox runs its lap and its widgets', async () => {
-      await page.goto(`${server.url}/sandbox.html`);
-      await ask(page, (src) => {
-        addEventListener('message', ({ data }) => { if (data?.ready) window.framed = data; });
-        document.querySelector('iframe').src = src;
-      }, '/index.html?w=16.1');
-      const framed = await until(page, () => window.framed);
-      assert.deepEqual(framed, { ready: 'w16.1', hasLap: true, troubles: [] });
-    });
+    for (const [what, path, expected] of [
+      ['a page of the chapter in a sandbox runs its lap and its widgets', '/index.html?w=16.1', { ready: 'w16.1', hasLap: true }],
+      ['a slide in a sandbox runs its widget', slideOf('w16.1'), { ready: 'w16.1', hasLap: false }],
+    ]) {
+      test(what, async () => {
+        await page.goto(`${server.url}/sandbox.html`);
+        await ask(page, (src) => {
+          addEventListener('message', ({ data }) => { if (data?.ready) window.framed = data; });
+          document.querySelector('iframe').src = src;
+        }, path);
+        const framed = await until(page, () => window.framed);
+        assert.deepEqual(framed, { ...expected, troubles: [] });
+      });
+    }
 
     test('a frame in a sandbox runs a widget, and maps the sample', async () => {
       await page.goto(`${server.url}/sandbox.html`);
@@ -185,6 +207,23 @@ export function testIn(name, open, problem) {
       await isClean();
     });
 
+    test('who leaves while the module arrives returns to a page whose widgets run', async () => {
+      const sent = new Promise((resolve) => { half.wanted = resolve; });
+      await visit('/widgets.html');
+      await sent;
+      await until(page, () => document.querySelector('slam-widget').shadowRoot.querySelector('progress').value > 0);
+      half.wanted = undefined;
+      // WebKit keeps the page both times: without what it was fetching, and as it ran.
+      for (const left of ['while the module arrives', 'while it runs']) {
+        await page.goto(`${server.url}/clean.html`);
+        await page.back();
+        await loaded(page);
+        await live(page, 'w16.1');
+        await followsKeyboard(page, { id: 'w16.1' });
+        assert.deepEqual(await troublesOf(page), [], left);
+      }
+    });
+
     test('the offline site opens from the disk, runs a widget, and maps the sample', async () => {
       const folder = mkdtempSync(join(tmpdir(), 'engines-'));
       try {
@@ -202,6 +241,12 @@ export function testIn(name, open, problem) {
       }
     });
   });
+}
+
+/** The address of a widget's slide. */
+function slideOf(id) {
+  const slides = readFileSync(join(h.DIST, 'slides.html'), 'utf8').split('<section ').slice(1);
+  return `/slides.html#${slides.findIndex((slide) => slide.startsWith('class="figure"') && slide.includes(`name="${id}"`)) + 1}`;
 }
 
 /** Presses the sample of w16.10 and waits for its map. */
@@ -271,28 +316,62 @@ async function followsKeyboard(page, { id }) {
   await changed(page, id, earlier);
 }
 
-/** A drag of something in the picture changes a value, or moves the view. */
-async function followsPointer(page, { id }) {
-  const spot = await ask(page, (name) => {
+/** Places in the picture that drag, those farthest from what does not drag first: the middle of a handle is among them. */
+const grips = (id) => {
+  const [STEP_PX, APART_PX, MOST] = [6, 40, 6];
+  const widget = document.querySelector(`slam-widget[name="${id}"]`);
+  widget.scrollIntoView();
+  const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+  const [columns, rows] = [box.width, Math.min(box.height, innerHeight - box.top - 60)].map((side) => Math.floor(side / STEP_PX));
+  const drags = Array.from({ length: rows }, (_, row) => Array.from({ length: columns }, (_, column) => widget.dragsAt(STEP_PX * column, STEP_PX * row)));
+  const reachOf = (row, column) => {
+    let reach = 0;
+    const isDragging = (dx, dy) => drags[row + dy]?.[column + dx] === true;
+    const holds = (n) => [-n, n].every((far) => Array.from({ length: 2 * n + 1 }, (_, k) => k - n).every((k) => isDragging(far, k) && isDragging(k, far)));
+    while (reach < MOST && holds(reach)) reach += 1;
+    return reach;
+  };
+  const found = drags.flatMap((line, row) => line.map((_, column) => ({ x: box.left + STEP_PX * column, y: box.top + STEP_PX * row, reach: reachOf(row, column) })));
+  const apart = [];
+  for (const one of found.filter(({ reach }) => reach > 0).sort((a, b) => b.reach - a.reach)) {
+    if (apart.length < MOST && apart.every(({ x, y }) => Math.hypot(one.x - x, one.y - y) > APART_PX)) apart.push(one);
+  }
+  return apart;
+};
+
+/** A drag of something in the picture changes a value other than the moment that a run plays. */
+async function followsPointer(page, id, moment) {
+  const spots = await ask(page, grips, id);
+  // The map of a recording does not drag.
+  if (id === 'w16.10') {
+    assert.deepEqual(spots, []);
+    return;
+  }
+  const values = () => ask(page, (name, played) => {
+    const { [played]: _, ...value } = document.querySelector(`slam-widget[name="${name}"]`).value;
+    return JSON.stringify(value);
+  }, id, moment);
+  for (const { x, y } of spots) {
+    const earlier = await values();
+    await page.move(x, y);
+    await page.down();
+    for (const step of [6, 14, 24, 36]) await page.move(x + step, y + step / 3);
+    await page.up();
+    await page.evaluate(`(async () => { for (let frame = 0; frame < ${FRAMES_AFTER_DRAG}; frame += 1) await new Promise(requestAnimationFrame); })()`);
+    if ((await values()) !== earlier) return;
+  }
+  assert.fail(`${id}: no drag changes a value, from ${JSON.stringify(spots)}`);
+}
+
+/** After its last preset a widget has the outcome that the native program computes, to the bit. */
+async function concludes(page, id, { preset, outcome }) {
+  const found = await ask(page, async (name, button) => {
     const widget = document.querySelector(`slam-widget[name="${name}"]`);
-    widget.scrollIntoView();
-    const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    for (let y = 8; y < Math.min(box.height, innerHeight - box.top - 60); y += 6) {
-      for (let x = 60; x < box.width - 60; x += 6) {
-        if ([0, 3, -3].every((d) => widget.dragsAt(x + d, y) && widget.dragsAt(x, y + d))) return [box.left + x, box.top + y];
-      }
-    }
-    return null;
-  }, id);
-  if (spot === null) return;
-  const earlier = await ask(page, state, id);
-  const frames = await ask(page, (name) => document.querySelector(`slam-widget[name="${name}"]`).frames, id);
-  const [x, y] = spot;
-  await page.move(x, y);
-  await page.down();
-  for (const step of [6, 14, 24, 36]) await page.move(x + step, y + step / 3);
-  await until(page, `(id, earlier, frames) => (${state})(id) !== earlier || document.querySelector('slam-widget[name="' + id + '"]').frames > frames + 2`, id, earlier, frames);
-  await page.up();
+    await widget.press(button);
+    while (widget.outcome === undefined) await new Promise((resolve) => setTimeout(resolve, 20));
+    return widget.outcome;
+  }, id, preset);
+  assert.deepEqual(found, outcome);
 }
 
 /** Play moves the run on. */
