@@ -24,7 +24,7 @@ export async function drawStills(outDir) {
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
   await drawStory('lap', story, outDir);
   const { drawDoubled } = await load('lap/still.ts');
-  const picture = card((surface, width) => drawDoubled(story, below(surface, 65), width), shades('light'));
+  const picture = card((surface, width) => drawDoubled(story, surface, width), shades('light'));
   await writeFile(path.join(outDir, 'pictures', 'card.png'), picture);
   const building = await readFile(path.join(here, 'building/building.json'), 'utf8');
   await drawStory('building', JSON.parse(building), outDir);
@@ -39,25 +39,10 @@ export async function drawStills(outDir) {
   };
 }
 
-/** Rounds sweeps, which are most of the file: those of keyframes to millimetres, the others to centimetres, a pixel. */
+/** Leaves out the true poses, which the page does not draw, and rounds sweeps, most of the file, to centimetres, a pixel. */
 function withShortSweeps(story) {
-  const makesMap = new Set(story.keyframes);
-  const ticks = story.ticks.map((tick, at) => {
-    const digits = makesMap.has(at) ? 3 : 2;
-    return { ...tick, sweep: tick.sweep.map((metres) => Number(metres.toFixed(digits))) };
-  });
+  const ticks = story.ticks.map(({ truth, sweep, ...tick }) => ({ ...tick, sweep: sweep.map((metres) => Number(metres.toFixed(2))) }));
   return { ...story, ticks };
-}
-
-/** A surface on which everything stands that many pixels lower: the strip in the middle of the higher card. */
-function below(surface, down) {
-  const lower = (points) => points.map(([x, y]) => [x, y + down]);
-  return {
-    ...surface,
-    line: (points, ...more) => surface.line(lower(points), ...more),
-    dots: (points, ...more) => surface.dots(lower(points), ...more),
-    area: (points, ...more) => surface.area(lower(points), ...more),
-  };
 }
 
 async function drawStory(name, story, outDir) {

@@ -1,7 +1,7 @@
 // The SVG of the matcher, with the two sweeps of a room. The build puts that of the first room into the page; the script
 // moves the source sweep.
 
-import type { Point, Pose } from '../lap/story';
+import type { Point, Pose } from '../world/surfaces';
 
 export interface Answer {
   /** The true pose of the source sweep. */

@@ -1,7 +1,8 @@
 // The matcher: the reader aligns one sweep with another, and ICP refines the pose. Who wins enters the next room.
 
 import type { Glue } from '../../pkg/glue.js';
-import { type Point, type Pose, between } from '../lap/story';
+import { between } from '../lap/story';
+import type { Point, Pose } from '../world/surfaces';
 import { pngOfSvg, send } from '../../ts/export';
 import { type Answer, pairLines, placedAt, ROOMS, type Scene, startOf, sweeps, viewBox } from './drawing';
 import { recordOf } from './record';
