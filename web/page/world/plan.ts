@@ -28,7 +28,10 @@ const CELL = { m: 0.025, leastPx: 1.25 };
 /** How far the ring that says that a thing can be taken is from it. */
 const GRIP_PX = 9;
 
-type Segment = readonly [Point, Point];
+/** Threads, from short to long. */
+const THREADS: readonly Ink[] = ['thread-1', 'thread-2', 'thread-3', 'thread-4', 'thread-5'];
+
+export type Segment = readonly [Point, Point];
 
 /** The floor within the walls, and what the walls leave in the shade. */
 export function ground(surface: Surface, view: View, segments: readonly Segment[]): void {
@@ -80,6 +83,15 @@ export function returns(surface: Surface, view: View, points: readonly Point[], 
 /** A map, as ink that gathers where many returns lie. */
 export function map(surface: Surface, view: View, points: readonly Point[], ink: Ink, alpha?: number): void {
   surface.mist(points.map(view.to), ink, Math.max(CELL.m * view.pxPerM, CELL.leastPx), alpha);
+}
+
+/** Correspondences: the longer a thread the wider and the warmer, the longest on top. */
+export function threads(surface: Surface, view: View, pairs: readonly Segment[], reachM: number): void {
+  for (const [k, ink] of THREADS.entries()) {
+    const share = ([from, to]: Segment): number => Math.min(Math.hypot(to[0] - from[0], to[1] - from[1]) / reachM, 0.999);
+    const alike = pairs.filter((pair) => Math.floor(share(pair) * THREADS.length) === k);
+    if (alike.length > 0) surface.lines(alike.map((pair) => pair.map(view.to)), ink, 1.25 + (2 * (k + 0.5)) / THREADS.length);
+  }
 }
 
 /** The two tracks of a robot's wheels. */

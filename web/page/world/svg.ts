@@ -5,6 +5,9 @@ import { FONT, type Ink, type Inks, type Point, type Stroke, type Surface, TAB, 
 /** Opacity of a cell of a map with at least that many returns. */
 const MIST: readonly [number, number][] = [[1, 0.35], [2, 0.6], [4, 0.9]];
 
+/** Colours that the style sheet around an SVG decides. */
+export const STYLED = new Proxy({} as Inks, { get: (_, ink) => `var(--${String(ink)})` });
+
 /** Collects the elements of an SVG in `text`. */
 export class SvgSurface implements Surface {
   readonly #inks: Inks;
