@@ -17,6 +17,7 @@ const WALL = { m: 0.12, leastPx: 3 };
 const EDGE_PX = 1;
 /** Shades of a wall, to the lower right, the farther one lighter. */
 const SHADES: readonly [Ink, number][] = [['shade-far', 0.13], ['shade', 0.07]];
+const SHADE_STEP_PX = 2;
 /** Half the width of a robot. */
 const ROBOT = { m: 0.18, leastPx: 11 };
 /** Half the distance of its wheels. */
@@ -40,9 +41,10 @@ export function ground(surface: Surface, view: View, segments: readonly Segment[
   const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
   surface.area([[left, top], [right, top], [right, bottom], [left, bottom]], 'floor');
   for (const [ink, metres] of SHADES) {
-    const steps = [0.25, 0.5, 0.75, 1].map((share) => share * metres);
+    const count = Math.floor((metres * view.pxPerM) / SHADE_STEP_PX);
+    const steps = Array.from({ length: count }, (_, k) => ((k + 1) / count) * metres);
     const moved = steps.flatMap((by) => segments.map((wall) => wall.map(([x, y]) => view.to([x + by, y - by]))));
-    surface.lines(moved, ink, wallPx(view), { isSquare: true });
+    if (count > 0) surface.lines(moved, ink, wallPx(view), { isSquare: true });
   }
 }
 

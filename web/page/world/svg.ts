@@ -8,6 +8,12 @@ const MIST: readonly [number, number][] = [[1, 0.35], [2, 0.6], [4, 0.9]];
 /** Colours that the style sheet around an SVG decides. */
 export const STYLED = new Proxy({} as Inks, { get: (_, ink) => `var(--${String(ink)})` });
 
+/** The properties that declare the colours of such an SVG in the theme 0, light, or 1, dark. */
+export function declared(svg: string, palette: Readonly<Record<string, readonly string[]>>, theme: 0 | 1): string {
+  const used = new Set([...svg.matchAll(/var\(--([a-z0-9-]+)\)/g)].map(([, ink = '']) => ink));
+  return [...used].map((ink) => `--${ink}:${palette[ink]?.[theme]}`).join(';');
+}
+
 /** Collects the elements of an SVG in `text`. */
 export class SvgSurface implements Surface {
   readonly #inks: Inks;
@@ -85,15 +91,17 @@ export class SvgSurface implements Surface {
   }
 }
 
-/** Cells as runs of their rows. */
+/** Cells as runs of their rows, each from the end of the one before. */
 function runs(cells: readonly [row: number, column: number][]): string {
   const sorted = [...cells].sort(([a, b], [c, d]) => a - c || b - d);
   let path = '';
+  let end: readonly [number, number] = [0, 0];
   for (let at = 0; at < sorted.length;) {
     const [row, column] = sorted[at] ?? [0, 0];
     let length = 1;
     while (sorted[at + length]?.[0] === row && sorted[at + length]?.[1] === column + length) length += 1;
-    path += `M${column} ${row}h${length - 1}`;
+    path += `m${column - end[1]} ${row - end[0]}h${length - 1}`;
+    end = [row, column + length - 1];
     at += length;
   }
   return path;
