@@ -17,7 +17,8 @@ const CANONICAL_SEED = 12648430;
 
 /**
  * Writes `pictures/lap-light.svg` and its dark sister, `pictures/card.png` for links to the site, and those of the small figures. Returns the figures' HTML by name,
- * the lap as the page replays it, as JSON, and the first figure: its two sweeps as SVG, where one belongs as JSON.
+ * the lap as the page replays it, as JSON, the first figure: its two sweeps as SVG, where one belongs as JSON,
+ * and the walls of the Apartment as SVG in metres.
  */
 export async function drawStills(outDir) {
   const core = await instantiate();
@@ -35,6 +36,7 @@ export async function drawStills(outDir) {
     sketches: await drawSketches(core, outDir),
     building,
     story: JSON.stringify(withShortSweeps(story)),
+    plan: await drawPlan(story),
     match: { svg: drawing(scene), answer: JSON.stringify({ truth: scene.truth, home: scene.home }) },
   };
 }
@@ -43,6 +45,17 @@ export async function drawStills(outDir) {
 function withShortSweeps(story) {
   const ticks = story.ticks.map(({ truth, sweep, ...tick }) => ({ ...tick, sweep: sweep.map((metres) => Number(metres.toFixed(2))) }));
   return { ...story, ticks };
+}
+
+/** The walls of the lap's world, in metres that point up. */
+async function drawPlan({ walls: segments }) {
+  const [{ ground, walls }, { STYLED, SvgSurface }] = await Promise.all(['world/plan.ts', 'world/svg.ts'].map(load));
+  const surface = new SvgSurface(STYLED);
+  const view = { to: ([x, y]) => [50 * x, 50 * y], pxPerM: 50, isSmall: false };
+  const ends = segments.map(([x0, y0, x1, y1]) => [[x0, y0], [x1, y1]]);
+  ground(surface, view, ends);
+  walls(surface, view, ends);
+  return `<g transform="scale(${1 / view.pxPerM})">${surface.text}</g>`;
 }
 
 async function drawStory(name, story, outDir) {

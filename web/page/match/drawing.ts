@@ -1,7 +1,7 @@
 // The SVG of the matcher, with the two sweeps of a room. The build puts that of the first room into the page; the script
 // moves the source sweep.
 
-import { robot, type Segment, seen, threads, type View } from '../world/plan';
+import { floor, robot, type Segment, seen, threads, type View } from '../world/plan';
 import type { Point, Pose } from '../world/surfaces';
 import { STYLED, SvgSurface } from '../world/svg';
 
@@ -76,7 +76,7 @@ export function sweeps(scene: Scene, room: Room): string {
   // The order of the points is that of the beams.
   return `<title id="match-name">Two sweeps of one room, to be aligned</title>
       <g transform="scale(1 -1)">
-        ${drawn((surface) => surface.area(targets, 'floor'))}
+        ${drawn((surface) => floor(surface, VIEW, target))}
         <g class="match-moved" transform="${at}">${drawn((surface) => seen(surface, VIEW, [0, 0], source, 'posterior', SEEN.alphas, SEEN.rangeM))}</g>
         <g class="match-target">${drawn((surface) => surface.discs(targets, 'measurement', POINT_PX))}</g>
         <g class="match-left" transform="${at}" visibility="hidden">${drawn((surface) => surface.discs(sources, 'posterior', POINT_PX))}</g>

@@ -34,6 +34,11 @@ const THREADS: readonly Ink[] = ['thread-1', 'thread-2', 'thread-3', 'thread-4',
 
 export type Segment = readonly [Point, Point];
 
+/** A floor whose walls are unknown, within points around it. */
+export function floor(surface: Surface, view: View, rim: readonly Point[]): void {
+  surface.area(rim.map(view.to), 'floor');
+}
+
 /** The floor within the walls, and what the walls leave in the shade. */
 export function ground(surface: Surface, view: View, segments: readonly Segment[]): void {
   const ends = segments.flat().map(view.to);
