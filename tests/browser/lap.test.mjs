@@ -252,18 +252,21 @@ describe('the lap under the title', () => {
 
   it('closes the doubled wall in slow motion under one number, and no labels lie on each other, also on a phone', async () => {
     const { Replay } = await load('story.ts');
-    const { draw } = await load('drawing.ts');
+    const { draw, drawGrip } = await load('drawing.ts');
     const story = storyOf(readFileSync(join(h.DIST, readdirSync(h.DIST).find((name) => name.startsWith('lap-'))), 'utf8'));
     const replay = new Replay(story);
-    const wordsAt = (seconds, width) => {
+    const wordsAt = (seconds, width, invitation = '') => {
       const words = [];
-      const nothing = () => {};
-      draw(story, replay.at(seconds), { line: nothing, dots: nothing, area: nothing, words: (text, at, _ink, size) => words.push({ text, at, size }) }, width);
-      return words;
+      const record = (text, at, _ink, size) => words.push({ text, at, size });
+      const surface = new Proxy({}, { get: (_, name) => (name === 'words' ? record : () => {}) });
+      draw(story, replay.at(seconds), surface, width);
+      drawGrip(replay.at(seconds), surface, width, invitation);
+      // A metre's words stand in a corner.
+      return words.filter(({ text }) => text !== '1 m');
     };
     for (const width of [348, 900]) {
       for (let seconds = 0; seconds <= replay.lengthS; seconds += 0.1) {
-        const words = wordsAt(seconds, width);
+        const words = wordsAt(seconds, width, 'drag me');
         for (const [k, one] of words.entries()) {
           for (const other of words.slice(k + 1)) {
             // A letter is about half as wide as high.

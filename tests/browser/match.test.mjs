@@ -127,6 +127,23 @@ describe('the sweeps that the reader aligns', () => {
     }, { reducedMotion: 'reduce' });
   });
 
+  it('show the ring of the focus to the keyboard, and not after a drag by mouse', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      const ring = () => tab.locator('#match svg').evaluate((svg) => [svg === document.activeElement, getComputedStyle(svg).outlineStyle]);
+      const from = await middle(tab, '.match-robot');
+      await drag(tab, from, { x: from.x + 20, y: from.y + 30 });
+      assert.deepEqual(await ring(), [true, 'none']);
+      await tab.keyboard.press('ArrowLeft');
+      assert.deepEqual(await ring(), [true, 'solid']);
+      await drag(tab, from, { x: from.x + 20, y: from.y + 30 });
+      assert.deepEqual(await ring(), [true, 'none']);
+      await tab.keyboard.press('Tab');
+      await tab.keyboard.press('Shift+Tab');
+      assert.deepEqual(await ring(), [true, 'solid']);
+    });
+  });
+
   it('obey the reader who drags them while ICP runs', async () => {
     await reading(async (tab) => {
       await live(tab);
@@ -242,7 +259,7 @@ describe('the sweeps that the reader aligns', () => {
         const { data } = canvas.getContext('2d').getImageData(0, 0, picture.width, picture.height);
         return { link: globalThis.parcel.url, colors: new Set(new Uint32Array(data.buffer)).size };
       });
-      // Crosses, squares and lines on paper, with the shades of their edges.
+      // Points, areas and lines on paper, with the shades of their edges.
       assert.ok(colors > 20, `${colors} colours`);
       await tab.goto(link);
       await tab.waitForSelector('#match[data-room="corridor"]');

@@ -511,6 +511,50 @@ fn scripts_form_no_circle() {
     assert!(found.is_empty(), "{found:?}");
 }
 
+/// The one module of the page that draws walls, robots and what a sensor sees.
+const PLANS: &str = "web/page/world";
+
+/// What a drawer of plans contains: a path on a canvas, a filled outline, or the colours of walls.
+fn part_of_a_plan(text: &str) -> Option<&'static str> {
+    let parts = [
+        "lineTo(",
+        ".area(",
+        ".fan(",
+        "<polygon",
+        "'wall'",
+        "wall-edge",
+        "--wall",
+    ];
+    parts.into_iter().find(|part| text.contains(part))
+}
+
+#[test]
+fn one_module_draws_every_plan_of_the_page() {
+    // A diagram of counts.
+    let chart = root().join("web/page/laps/strip.ts");
+    let mut seen = 0;
+    let mut folders = vec![root().join("web/page"), root().join("web/ts")];
+    while let Some(folder) = folders.pop() {
+        let entries = fs::read_dir(folder).expect("the folder is there").flatten();
+        for path in entries.map(|entry| entry.path()) {
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let part = part_of_a_plan(&text(&path));
+            if path.starts_with(root().join(PLANS)) {
+                seen += usize::from(part.is_some());
+            } else if path != chart {
+                assert_eq!(part, None, "{} belongs into {PLANS}", path.display());
+            }
+        }
+    }
+    assert_eq!(seen, 2, "files of {PLANS} draw");
+    assert_eq!(part_of_a_plan(&text(&root().join("index.html"))), None);
+    let second = "context.moveTo(x, y); context.lineTo(x + length, y);";
+    assert!(part_of_a_plan(second).is_some());
+}
+
 #[test]
 fn an_import_is_seen_over_several_lines() {
     let text =

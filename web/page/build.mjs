@@ -48,7 +48,7 @@ const scripts = await readFile(path.join(root, 'teaching/guide/widgets.md'), 'ut
 const specOf = await widgetSpecs();
 const template = (await readFile(path.join(here, 'template.html'), 'utf8')).replace('{fonts}', FONT_PRELOADS);
 const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
-const { sketches, story, match, building } = await drawStills(outDir);
+const { sketches, story, match, building, plan } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts({
   LAP_STORY: story,
   BUILDING_FILE: `./${await writeHashed('building.json', building)}`,
@@ -64,7 +64,7 @@ await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage({ file, source, html }) {
-  const page = await addListings(addSketches(addMatch(addStills(addGallery(foldExercises(html)))), sketches, source), root);
+  const page = await addListings(addSketches(addDrawings(addStills(addGallery(foldExercises(html)))), sketches, source), root);
   await writeFile(path.join(outDir, file), withPolicy(withNames(await addPreloads(page))));
 }
 
@@ -130,9 +130,10 @@ function addStills(html) {
     </picture>`);
 }
 
-/** Adds the SVG of the first figure. */
-function addMatch(html) {
-  return html.replace('<div class="match-picture" data-drawing="match">', (open) => `${open}${match.svg}`);
+/** Adds the SVG of the matcher, and the walls of the Apartment. */
+function addDrawings(html) {
+  return html.replace('<div class="match-picture" data-drawing="match">', (open) => `${open}${match.svg}`)
+    .replace('<g data-drawing="plan">', (open) => `${open}${plan}`);
 }
 
 /** Fills the small figures with their initial state: `<figure class="drawing sketch" data-sketch="gate">`. */

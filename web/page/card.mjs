@@ -4,8 +4,10 @@ import { deflateSync } from 'node:zlib';
 
 const WIDTH = 1200;
 const HEIGHT = 630;
+/** The lap is a strip in the middle of the card. */
+const TOP = 65;
 
-/** Draws by `draw(surface)`, a surface of `lap/drawing.ts` without words; returns the file. */
+/** Draws by `draw(surface)`, a surface of `world/surfaces.ts` without words; returns the file. */
 export function card(draw, inks) {
   const pixels = new Uint8Array(3 * WIDTH * HEIGHT);
   const channels = (color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
@@ -30,21 +32,40 @@ export function card(draw, inks) {
       for (let k = 0; k + 1 < cuts.length; k += 2) span(y, cuts[k], cuts[k + 1], rgb, alpha);
     }
   };
+  const circle = (x, y, radius) => Array.from({ length: 16 }, (_, k) => [x + radius * Math.cos((k * Math.PI) / 8), y + radius * Math.sin((k * Math.PI) / 8)]);
   const box = (x0, y0, x1, y1) => [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
   fill(box(0, 0, WIDTH, HEIGHT), inks.paper);
+  const lower = (points) => points.map(([x, y]) => [x, y + TOP]);
+  const line = (points, color, width, alpha, isSquare) => {
+    points.slice(1).forEach(([x1, y1], k) => {
+      const [x0, y0] = points[k];
+      const by = (0.5 * width) / (Math.hypot(x1 - x0, y1 - y0) || 1);
+      const [dx, dy] = [by * (x1 - x0), by * (y1 - y0)];
+      const [ex, ey] = isSquare ? [dx, dy] : [0, 0];
+      fill([[x0 - dy - ex, y0 + dx - ey], [x1 - dy + ex, y1 + dx + ey], [x1 + dy + ex, y1 - dx + ey], [x0 + dy - ex, y0 - dx - ey]], color, alpha);
+    });
+  };
+  let isDrawn = false;
   draw({
-    line(points, ink, width, { alpha = 1 } = {}) {
-      points.slice(1).forEach(([x1, y1], k) => {
-        const [x0, y0] = points[k];
-        const length = Math.hypot(x1 - x0, y1 - y0) || 1;
-        const [nx, ny] = [(-0.5 * width * (y1 - y0)) / length, (0.5 * width * (x1 - x0)) / length];
-        fill([[x0 + nx, y0 + ny], [x1 + nx, y1 + ny], [x1 - nx, y1 - ny], [x0 - nx, y0 - ny]], inks[ink], alpha);
-      });
+    lines(lines, ink, width, { alpha = 1, isSquare = false } = {}) {
+      // A bar of a metre says nothing without its words.
+      if (isDrawn) return;
+      for (const points of lines) line(lower(points), inks[ink], width, alpha, isSquare);
     },
-    dots(points, ink, size, alpha) {
-      for (const [x, y] of points) fill(box(x - size / 2, y - size / 2, x + size / 2, y + size / 2), inks[ink], alpha);
+    area: (points, ink, alpha) => fill(lower(points), inks[ink], alpha),
+    fan: (center, rim, ink, [inner, outer]) => fill(lower([center, ...rim]), inks[ink], (inner + outer) / 2),
+    discs(points, ink, radius) {
+      for (const [x, y] of lower(points)) fill(circle(x, y, radius), inks[ink]);
     },
-    area: (points, ink) => fill(points, inks[ink]),
+    mist(points, ink, radius) {
+      for (const [x, y] of lower(points)) fill(circle(x, y, 0.6 * radius), inks[ink], 0.3);
+    },
+    fade(_size, [, above]) {
+      for (let y = 0; y < above; y += 1) {
+        for (const row of [y, HEIGHT - 1 - y]) fill(box(0, row, WIDTH, row + 1), inks.paper, 1 - y / above);
+      }
+      isDrawn = true;
+    },
     words() {},
   }, WIDTH);
   return png(pixels);

@@ -17,14 +17,15 @@ const CANONICAL_SEED = 12648430;
 
 /**
  * Writes `pictures/lap-light.svg` and its dark sister, `pictures/card.png` for links to the site, and those of the small figures. Returns the figures' HTML by name,
- * the lap as the page replays it, as JSON, and the first figure: its two sweeps as SVG, where one belongs as JSON.
+ * the lap as the page replays it, as JSON, the first figure: its two sweeps as SVG, where one belongs as JSON,
+ * and the walls of the Apartment as SVG in metres.
  */
 export async function drawStills(outDir) {
   const core = await instantiate();
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
   await drawStory('lap', story, outDir);
   const { drawDoubled } = await load('lap/still.ts');
-  const picture = card((surface, width) => drawDoubled(story, below(surface, 65), width), shades('light'));
+  const picture = card((surface, width) => drawDoubled(story, surface, width), shades('light'));
   await writeFile(path.join(outDir, 'pictures', 'card.png'), picture);
   const building = await readFile(path.join(here, 'building/building.json'), 'utf8');
   await drawStory('building', JSON.parse(building), outDir);
@@ -35,29 +36,26 @@ export async function drawStills(outDir) {
     sketches: await drawSketches(core, outDir),
     building,
     story: JSON.stringify(withShortSweeps(story)),
+    plan: await drawPlan(story),
     match: { svg: drawing(scene), answer: JSON.stringify({ truth: scene.truth, home: scene.home }) },
   };
 }
 
-/** Rounds sweeps, which are most of the file: those of keyframes to millimetres, the others to centimetres, a pixel. */
+/** Leaves out the true poses, which the page does not draw, and rounds sweeps, most of the file, to centimetres, a pixel. */
 function withShortSweeps(story) {
-  const makesMap = new Set(story.keyframes);
-  const ticks = story.ticks.map((tick, at) => {
-    const digits = makesMap.has(at) ? 3 : 2;
-    return { ...tick, sweep: tick.sweep.map((metres) => Number(metres.toFixed(digits))) };
-  });
+  const ticks = story.ticks.map(({ truth, sweep, ...tick }) => ({ ...tick, sweep: sweep.map((metres) => Number(metres.toFixed(2))) }));
   return { ...story, ticks };
 }
 
-/** A surface on which everything stands that many pixels lower: the strip in the middle of the higher card. */
-function below(surface, down) {
-  const lower = (points) => points.map(([x, y]) => [x, y + down]);
-  return {
-    ...surface,
-    line: (points, ...more) => surface.line(lower(points), ...more),
-    dots: (points, ...more) => surface.dots(lower(points), ...more),
-    area: (points, ...more) => surface.area(lower(points), ...more),
-  };
+/** The walls of the lap's world, in metres that point up. */
+async function drawPlan({ walls: segments }) {
+  const [{ ground, walls }, { STYLED, SvgSurface }] = await Promise.all(['world/plan.ts', 'world/svg.ts'].map(load));
+  const surface = new SvgSurface(STYLED);
+  const view = { to: ([x, y]) => [50 * x, 50 * y], pxPerM: 50, isSmall: false };
+  const ends = segments.map(([x0, y0, x1, y1]) => [[x0, y0], [x1, y1]]);
+  ground(surface, view, ends);
+  walls(surface, view, ends);
+  return `<g transform="scale(${1 / view.pxPerM})">${surface.text}</g>`;
 }
 
 async function drawStory(name, story, outDir) {

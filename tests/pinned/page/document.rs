@@ -63,8 +63,6 @@ pub struct Document {
     pub references: Vec<(String, String)>,
     /// Unmarked text that contains a number: there should be none.
     pub loose_numbers: Vec<String>,
-    /// The path of the walls in the plan.
-    pub wall_path: String,
 }
 
 /// The element of the current text.
@@ -198,7 +196,6 @@ impl Document {
             "code" => *open = Some(Open::Code),
             "tex" => *open = Some(Open::Formula(String::new())),
             "slam-widget" => self.widgets.extend(attribute("name")),
-            "path" if class == "walls" => self.wall_path = attribute("d").unwrap_or_default(),
             "/span" | "/a" | "/tex" | "/li" | "/code" => self.close(open, name),
             _ => {}
         }

@@ -1,40 +1,8 @@
 //! The page's own drawings: consistent with the Apartment, and with the marks of the legend.
 
 use ch16_lab::lap::{LapConfig, LapRunner};
-use pr_sim::World;
 
 use super::document::{page_style, source};
-use super::page;
-
-#[test]
-fn the_plan_shows_the_walls_of_the_apartment() {
-    let path = page().wall_path;
-    let mut drawn = Vec::new();
-    for line in path.split('M').skip(1) {
-        let split = line.find(['H', 'V']).expect("walls run along the axes");
-        let from: Vec<f64> = line[..split]
-            .split(' ')
-            .map(|n| n.parse().unwrap())
-            .collect();
-        let to: f64 = line[split + 1..].parse().unwrap();
-        let end = if line.contains('H') {
-            [to, from[1]]
-        } else {
-            [from[0], to]
-        };
-        drawn.push([[from[0], from[1]], end]);
-    }
-    let world = World::apartment();
-    let walls: Vec<[[f64; 2]; 2]> = world
-        .walls()
-        .iter()
-        .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]])
-        .collect();
-    for wall in &walls {
-        assert!(drawn.contains(wall), "{wall:?} is missing in {drawn:?}");
-    }
-    assert_eq!(drawn.len(), walls.len());
-}
 
 #[test]
 fn the_plan_marks_where_the_lap_starts_and_where_it_closes_its_first_loop() {

@@ -1,7 +1,8 @@
 // A building mapped by three estimates of the same drive: odometry, scan matching, loop closure.
 
-import type { Surface } from '../lap/drawing';
-import { type Point, type Pose, between } from '../lap/story';
+import { between } from '../lap/story';
+import { map, path, robot, gripPx, type View } from '../world/plan';
+import type { Point, Pose, Surface } from '../world/surfaces';
 
 /** The output of `cargo run --release -p ch16_lab --example building_story`. */
 export interface Building {
@@ -19,10 +20,15 @@ export interface Building {
 export const LOOPS = 2;
 /** Size of the view relative to the building. */
 const MARGIN = 1.1;
+/** Lines are thinner in a picture narrower than that, and in a large building. */
+const SMALL_PX = 480;
+const SMALL_PX_PER_CM = 0.3;
+/** Within that distance of its sides the picture ends in the page. */
+const FADE_PX = 28;
 /** Share of outliers, such as returns through glass, that the view ignores at each side. */
 const STRAY = 0.004;
 
-interface View {
+interface Fit {
   x: number;
   y: number;
   scale: number;
@@ -31,23 +37,25 @@ interface View {
 /** The building at `at`: 0 by the wheels, 1 by the walls, 2 with loops, and between them. */
 export function draw(story: Building, at: number, surface: Surface, width: number, height: number): void {
   const poses = posesAt(story, at);
-  const view = viewAt(story, at, width, height);
-  const toPixels = ([x, y]: Point): Point => [width / 2 + view.scale * (x - view.x), height / 2 - view.scale * (y - view.y)];
-  const unit = Math.min(Math.max(width / 900, 0.65), 1.3);
-  const way = (of: readonly Pose[]): Point[] => of.map(([x, y]) => toPixels([x, y]));
-  if (at > 0) surface.line(way(story.wheels), 'prediction', 1.5 * unit, { alpha: 0.55, dash: [6 * unit, 4 * unit] });
-  surface.dots(onPicture(pointsOf(story, poses).map(toPixels), width, height), 'ink', 2 * unit);
+  const fit = fitAt(story, at, width, height);
+  const to = ([x, y]: Point): Point => [width / 2 + fit.scale * (x - fit.x), height / 2 - fit.scale * (y - fit.y)];
+  const view: View = { to, pxPerM: 100 * fit.scale, isSmall: width < SMALL_PX || fit.scale < SMALL_PX_PER_CM };
+  const placeOf = ([x, y]: Pose): Point => [x, y];
+  if (at > 0) surface.lines([story.wheels.map((pose) => to(placeOf(pose)))], 'prediction', 1.75, { alpha: 0.7, dash: [5, 4] });
+  map(surface, view, onPicture(pointsOf(story, poses), to, width, height), 'map-old');
   const ink = at === 0 ? 'prediction' : 'posterior';
-  const path = way(poses);
-  surface.line(path, ink, 2.5 * unit);
-  const size = Math.max(14 * unit, 12);
-  const end = path.at(-1);
-  if (end === undefined) return;
-  surface.dots([end], ink, 10 * unit);
-  surface.words(at === 0 ? 'where the wheels put it' : 'the robot', [end[0], end[1] + 1.4 * size], ink, size);
+  path(surface, view, poses.map(placeOf), ink);
+  surface.fade([width, height], [FADE_PX, FADE_PX]);
+  const last = poses.at(-1);
+  if (last === undefined) return;
+  robot(surface, view, last, ink, at === 0);
+  const size = width < SMALL_PX ? 14 : 17;
+  const [x, y] = to(placeOf(last));
+  surface.words(at === 0 ? 'where the wheels put it' : 'the robot', [x, y + gripPx(view) + 0.5 * size], ink, size);
   // The dashed path mostly ends outside the picture: its label is at its last visible point.
-  const last = at > 0 ? way(story.wheels).findLast(([x, y]) => x > 5 * size && x < width - 5 * size && y > 2 * size && y < height - 2 * size) : undefined;
-  if (last !== undefined) surface.words('from wheels', last, 'prediction', size);
+  const isVisible = ([left, top]: Point): boolean => left > 5 * size && left < width - 5 * size && top > 2 * size && top < height - 2 * size;
+  const end = at > 0 ? story.wheels.map((pose) => to(placeOf(pose))).findLast(isVisible) : undefined;
+  if (end !== undefined) surface.words('from wheels', end, 'prediction', size);
 }
 
 /** The two estimates around `at`, and its share of the way between them. */
@@ -71,16 +79,19 @@ function pointsOf({ ranges_cm, beams_mrad: [first, step] }: Building, poses: rea
   });
 }
 
-function onPicture(points: readonly Point[], width: number, height: number): Point[] {
-  return points.filter(([x, y]) => x > 0 && x < width && y > 0 && y < height);
+function onPicture(points: readonly Point[], to: View['to'], width: number, height: number): Point[] {
+  return points.filter((point) => {
+    const [x, y] = to(point);
+    return x > 0 && x < width && y > 0 && y < height;
+  });
 }
 
-const views = new WeakMap<Building, { width: number; height: number; of: [View, View, View] }>();
+const fits = new WeakMap<Building, { width: number; height: number; of: [Fit, Fit, Fit] }>();
 
-function viewAt(story: Building, at: number, width: number, height: number): View {
-  let known = views.get(story);
+function fitAt(story: Building, at: number, width: number, height: number): Fit {
+  let known = fits.get(story);
   if (known === undefined || known.width !== width || known.height !== height) {
-    const fit = (state: number): View => {
+    const fit = (state: number): Fit => {
       const points = pointsOf(story, posesAt(story, state));
       const [left, right] = spanOf(points.map(([x]) => x));
       const [low, high] = spanOf(points.map(([, y]) => y));
@@ -88,7 +99,7 @@ function viewAt(story: Building, at: number, width: number, height: number): Vie
       return { x: (left + right) / 2, y: (low + high) / 2, scale };
     };
     known = { width, height, of: [fit(0), fit(1), fit(LOOPS)] };
-    views.set(story, known);
+    fits.set(story, known);
   }
   const [from, to, share] = spanAt(known.of, at);
   const mix = (a: number, b: number): number => a + share * (b - a);

@@ -2,13 +2,11 @@
 // reader drops or picks a log, or maps the sample.
 
 import { chooseFiles, acceptDrops } from '../../ts/robot/files';
-import type { Ink } from '../lap/drawing';
-import { canvasSurface, contextOf, readInks, watchColors } from '../lap/surfaces';
+import { canvasSurface, contextOf, readInks, watchColors } from '../world/surfaces';
 import { type Building, draw, LOOPS, formatError } from './drawing';
 
 /** Keyframes of the replay, as time and slider value: first the map comes apart. */
 const REPLAY: [number, number][] = [[0, 2], [0.9, 0], [2, 0], [4.4, 1], [5.4, 1], [7.4, 2]];
-const INKS: Ink[] = ['prediction', 'posterior', 'ink', 'paper'];
 
 interface Mapper extends HTMLElement {
   openFile(files: readonly File[]): void;
@@ -113,7 +111,7 @@ export class BuildingFigure {
   #paint(): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     const context = contextOf(this.#canvas, height);
-    if (context !== undefined) draw(this.#story, this.#at, canvasSurface(context, readInks(this.#figure, INKS)), width, height);
+    if (context !== undefined) draw(this.#story, this.#at, canvasSurface(context, readInks(this.#figure)), width, height);
   }
 }
 

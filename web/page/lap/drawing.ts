@@ -1,18 +1,8 @@
 // Draws one moment of the lap to a canvas or an SVG.
 
-import type { Moment, Point, Pose, Story } from './story';
-
-/** Colours by their names in the style sheets. */
-export type Ink = 'truth' | 'prediction' | 'outbound' | 'return' | 'posterior' | 'prior' | 'measurement' | 'ink' | 'paper';
-
-/** A canvas or an SVG; positions in pixels from the upper left corner. */
-export interface Surface {
-  line(points: readonly Point[], ink: Ink, width: number, options?: { alpha?: number; dash?: number[] }): void;
-  dots(points: readonly Point[], ink: Ink, size: number, alpha?: number): void;
-  area(points: readonly Point[], ink: Ink): void;
-  /** Text centred at a point, with a halo in the colour of the paper. */
-  words(text: string, at: Point, ink: Ink, size: number): void;
-}
+import { grip, gripPx, ground, map, path, returns, robot, scaleBar, seen, tracks, type View, walls } from '../world/plan';
+import type { Point, Pose, Surface } from '../world/surfaces';
+import type { Moment, Story } from './story';
 
 /** Aspect ratio of the strip; on a phone it is higher. `lap.css` has both, with the width. */
 export const ASPECT = 2.4;
@@ -28,74 +18,102 @@ const WHOLE = { x: 6, y: 4.55, width: 12.5 };
 const CLOSE = { x: 4.9, y: 4.7, width: 9.3 };
 /** Positions of the labels of the walls, in metres. */
 const WALL_LABELS = { out: [2.1, 5.35], back: [7.6, 5.35] } as const;
-/** At this width line widths are as given; at others they scale, within limits. */
+/** At this width the correction is as large as given; at others it scales, within limits. */
 const REFERENCE_WIDTH_PX = 900;
+/** Opacity of a sweep's area at the sensor and at its range, m. */
+const SEEN = { alphas: [0.3, 0.06], rangeM: 6 } as const;
+/** Where the world ends in the page, as shares of the height: at all sides of a close-up, above and below the whole. */
+const FADE = { above: 0.15, aside: 0.12 };
 
 export function draw(story: Story, moment: Moment, surface: Surface, widthPx: number): void {
-  const toPixels = camera(moment.closeness, widthPx);
-  const unit = Math.min(Math.max(widthPx / REFERENCE_WIDTH_PX, 0.65), 1.3);
-  for (const [x0, y0, x1, y1] of story.walls) surface.line([toPixels([x0, y0]), toPixels([x1, y1])], 'truth', unit, { alpha: 0.55 });
-  drawRays(story, moment, surface, toPixels, unit);
+  const view = viewOf(moment, widthPx);
+  const segments = story.walls.map(([x0, y0, x1, y1]) => [[x0, y0], [x1, y1]] as const);
+  const [x, y] = moment.robot;
+  const hits = placed(story.ticks[moment.tick]?.sweep ?? [], moment.robot);
+  ground(surface, view, segments);
+  seen(surface, view, [x, y], hits, 'measurement', SEEN.alphas, SEEN.rangeM);
+  walls(surface, view, segments);
+  drawBefore(story, moment, surface, view);
   const [out, back] = mapOf(story, moment);
-  surface.dots(out.map(toPixels), 'outbound', 3 * unit);
-  surface.dots(back.map(toPixels), 'return', 3 * unit);
-  drawBefore(story, moment, surface, toPixels, unit);
-  drawMoved(moment, surface, toPixels, unit);
-  const path = moment.keyframes.map(([x, y]): Point => [x, y]);
-  const [robotX, robotY] = moment.robot;
-  surface.line([...path, [robotX, robotY] as Point].map(toPixels), 'posterior', 2 * unit);
+  map(surface, view, out, 'map-old');
+  map(surface, view, back, 'map-new');
+  tracks(surface, view, moment.wheels, 'prediction');
+  drawMoved(moment, surface, view);
+  const nodes = moment.keyframes.map((pose): Point => [pose[0], pose[1]]);
+  path(surface, view, [...nodes, [x, y]], 'posterior');
   for (const { from, to: old } of moment.closed) {
-    const ends = [path[from], path[old]].filter((end) => end !== undefined);
-    surface.line(ends.map(toPixels), 'measurement', 4 * unit);
+    const ends = [nodes[from], nodes[old]].filter((end) => end !== undefined);
+    surface.lines([ends.map(view.to)], 'measurement', view.isSmall ? 3.5 : 5);
   }
-  surface.line(moment.wheels.map(toPixels), 'prediction', 2.5 * unit, { dash: [7 * unit, 4 * unit] });
-  const [wheelsX, wheelsY] = moment.wheels.at(-1) ?? [robotX, robotY];
-  drawRobot(surface, toPixels, [wheelsX, wheelsY, wheelsHeading(moment)], 'prediction', 8 * unit);
-  drawRobot(surface, toPixels, moment.robot, 'posterior', 10 * unit);
-  drawPathLabels(moment, surface, toPixels, unit);
-  if (moment.closed.length > 0) drawCorrection(moment, surface, unit, widthPx);
-  else drawWallLabels(moment, surface, toPixels, unit, widthPx);
+  returns(surface, view, hits, 'measurement');
+  robot(surface, view, moment.wheels.at(-1) ?? moment.robot, 'prediction', true);
+  robot(surface, view, moment.robot, 'posterior');
+  const heightPx = widthPx / aspectAt(widthPx);
+  surface.fade([widthPx, heightPx], [0.01 * widthPx + moment.closeness * FADE.aside * heightPx, FADE.above * heightPx]);
+  scaleBar(surface, view, [12, heightPx - 14]);
+  drawPathLabels(moment, surface, view);
+  if (moment.closed.length > 0) drawCorrection(moment, surface, view, widthPx);
+  else drawWallLabels(moment, surface, view, widthPx);
+}
+
+/** That the robot can be dragged: a ring around it, and words until somebody has. */
+export function drawGrip(moment: Moment, surface: Surface, widthPx: number, words: string): void {
+  const view = viewOf(moment, widthPx);
+  grip(surface, view, moment.robot);
+  robot(surface, view, moment.robot, 'posterior');
+  if (words === '') return;
+  const size = labelSize(view);
+  const [x, y] = view.to([moment.robot[0], moment.robot[1]]);
+  const half = 0.3 * size * words.length;
+  // Ahead of the robot, where it has no path yet, unless the picture ends there.
+  const ahead = x + Math.sign(Math.cos(moment.robot[2])) * (gripPx(view) + 8 + half);
+  const isInside = ahead > half && ahead < widthPx - half;
+  surface.words(words, [isInside ? ahead : 2 * x - ahead, y], 'accent', size);
 }
 
 /** As the doubled wall closes: how far the farthest keyframe has moved, below the map. */
-function drawCorrection({ before, keyframes }: Moment, surface: Surface, unit: number, widthPx: number): void {
+function drawCorrection({ before, keyframes }: Moment, surface: Surface, { isSmall }: View, widthPx: number): void {
+  const unit = Math.min(Math.max(widthPx / REFERENCE_WIDTH_PX, 0.65), 1.3);
   const moved = keyframes.map(([x, y], node) => {
     const [oldX, oldY] = before.poses[node] ?? [x, y];
     return Math.hypot(x - oldX, y - oldY);
   });
-  const size = 36 * unit;
+  const size = 28 * unit;
   const words = `the past moved ${Math.round(100 * Math.max(...moved))} cm`;
-  surface.words(words, [widthPx / 2, widthPx / aspectAt(widthPx) - 0.75 * size], 'ink', size);
+  // On a phone beside the bar of a metre.
+  surface.words(words, [(isSmall ? 0.65 : 0.5) * widthPx, widthPx / aspectAt(widthPx) - 0.9 * size], 'ink', size);
 }
 
-const labelSize = (unit: number): number => Math.max(14 * unit, 11);
+const labelSize = ({ isSmall }: View): number => (isSmall ? 14 : 17);
 
 /** Labels each path at its end. */
-function drawPathLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
-  const size = labelSize(unit);
-  const robot = toPixels([moment.robot[0], moment.robot[1]]);
-  const wheels = toPixels(moment.wheels.at(-1) ?? [moment.robot[0], moment.robot[1]]);
-  const side = wheels[1] > robot[1] ? 1 : -1;
+function drawPathLabels(moment: Moment, surface: Surface, view: View): void {
+  const size = labelSize(view);
+  const away = gripPx(view) + size;
+  const ofRobot = view.to([moment.robot[0], moment.robot[1]]);
+  const [x, y] = moment.wheels.at(-1) ?? moment.robot;
+  const ofWheels = view.to([x, y]);
+  const side = ofWheels[1] > ofRobot[1] ? 1 : -1;
   // There may be no room above the wheels' robot.
-  const ofWheels = wheels[1] + side * 1.7 * size < size ? 1 : side;
-  surface.words('from wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
-  surface.words('from sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
+  const below = ofWheels[1] + side * away < size ? 1 : side;
+  surface.words('from wheels', [ofWheels[0], ofWheels[1] + below * away], 'prediction', size);
+  surface.words('from sweeps', [ofRobot[0], ofRobot[1] - side * away], 'posterior', size);
 }
 
 /** Labels the walls once the way back has some. */
-function drawWallLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number, widthPx: number): void {
+function drawWallLabels(moment: Moment, surface: Surface, view: View, widthPx: number): void {
   // On a phone they would lie on each other: the caption has the words.
   if (moment.act === 0 || widthPx < PHONE_PX) return;
-  const size = labelSize(unit);
-  surface.words('walls, outbound', toPixels(WALL_LABELS.out), 'outbound', size);
-  surface.words('walls, return', toPixels(WALL_LABELS.back), 'return', size);
+  const size = labelSize(view);
+  surface.words('walls, outbound', view.to(WALL_LABELS.out), 'map-old', size);
+  surface.words('walls, return', view.to(WALL_LABELS.back), 'map-new', size);
 }
 
 /** At the end: the walls of the way back before the loops closed. */
-function drawBefore(story: Story, { before: { poses, strength } }: Moment, surface: Surface, toPixels: Camera, unit: number): void {
+function drawBefore(story: Story, { before: { poses, strength } }: Moment, surface: Surface, view: View): void {
   if (strength === 0) return;
   const doubled = poses.flatMap((pose, node) => (node <= story.turn ? [] : placed(story.ticks[story.keyframes[node] ?? 0]?.sweep ?? [], pose)));
-  surface.dots(doubled.map(toPixels), 'prior', 3 * unit, 0.4 * strength);
+  map(surface, view, doubled, 'map-new', 0.35 * strength);
 }
 
 type Camera = (point: Point) => Point;
@@ -103,6 +121,10 @@ type Camera = (point: Point) => Point;
 function frame(closeness: number, widthPx: number): { scale: number; middleX: number; middleY: number } {
   const mix = (key: keyof typeof WHOLE): number => WHOLE[key] + closeness * (CLOSE[key] - WHOLE[key]);
   return { scale: widthPx / mix('width'), middleX: mix('x'), middleY: mix('y') };
+}
+
+function viewOf({ closeness }: Moment, widthPx: number): View {
+  return { to: camera(closeness, widthPx), pxPerM: frame(closeness, widthPx).scale, isSmall: widthPx < PHONE_PX };
 }
 
 /** Converts metres to pixels. */
@@ -137,50 +159,7 @@ function placed(sweep: readonly number[], [x, y, heading]: Pose): Point[] {
   return points;
 }
 
-/** The beams of the current sweep. */
-function drawRays(story: Story, moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
-  const [x, y] = moment.robot;
-  const sweep = story.ticks[moment.tick]?.sweep ?? [];
-  for (const point of placed(sweep, moment.robot)) {
-    surface.line([toPixels([x, y]), toPixels(point)], 'measurement', 0.75 * unit, { alpha: 0.16 });
-  }
-}
-
-/** An arrow from the old to the new position of each corrected keyframe. */
-function drawMoved(moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
-  const { from, strength } = moment.moved;
-  if (strength === 0) return;
-  from.forEach((before, node) => {
-    const after = moment.keyframes[node];
-    if (after === undefined) return;
-    const [start, end] = [toPixels([before[0], before[1]]), toPixels([after[0], after[1]])];
-    const [dx, dy] = [end[0] - start[0], end[1] - start[1]];
-    const length = Math.hypot(dx, dy);
-    if (length < 3 * unit) return;
-    const head = Math.min(6 * unit, length / 2);
-    const side = (sign: number): Point => [
-      end[0] - (head * (dx - (sign * dy) / 1.6)) / length,
-      end[1] - (head * (dy + (sign * dx) / 1.6)) / length,
-    ];
-    surface.line([start, end], 'prior', 2 * unit, { alpha: strength });
-    surface.line([side(1), end, side(-1)], 'prior', 2 * unit, { alpha: strength });
-  });
-}
-
-function wheelsHeading({ wheels, robot }: Moment): number {
-  const [last, before] = [wheels.at(-1), wheels.findLast(([x, y]) => {
-    const end = wheels.at(-1);
-    return end !== undefined && Math.hypot(end[0] - x, end[1] - y) > 0.05;
-  })];
-  if (last === undefined || before === undefined) return robot[2];
-  return Math.atan2(last[1] - before[1], last[0] - before[0]);
-}
-
-function drawRobot(surface: Surface, toPixels: Camera, [x, y, heading]: Pose, ink: Ink, size: number): void {
-  const [px, py] = toPixels([x, y]);
-  const corner = (turn: number, reach: number): Point => [
-    px + reach * size * Math.cos(heading + turn),
-    py - reach * size * Math.sin(heading + turn),
-  ];
-  surface.area([corner(0, 1.2), corner(2.5, 1), corner(-2.5, 1)], ink);
+/** The path before the last correction, dotted. */
+function drawMoved({ moved: { from, strength } }: Moment, surface: Surface, view: View): void {
+  if (strength > 0) surface.lines([from.map(([x, y]) => view.to([x, y]))], 'posterior', 2, { alpha: strength, dash: [2, 5] });
 }

@@ -2,13 +2,12 @@
 //
 // It plays once while it is in view, unless the reader prefers reduced motion. The slider sets the time at any moment.
 
-import { aspectAt, camera, draw, type Ink, worldAt } from './drawing';
-import { type Moment, type Point, Replay, type Story } from './story';
-import { canvasSurface, contextOf, type Inks, readInks, watchColors } from './surfaces';
+import { canvasSurface, contextOf, type Inks, type Point, readInks, watchColors } from '../world/surfaces';
+import { aspectAt, camera, draw, drawGrip, worldAt } from './drawing';
+import { type Moment, Replay, type Story } from './story';
 
 /** Step of the slider and of an arrow key. */
 const STEP_S = 0.05;
-const INKS: Ink[] = ['truth', 'prediction', 'outbound', 'return', 'posterior', 'prior', 'measurement', 'ink', 'paper'];
 /** Distance from the robot within which a press drags it. */
 const GRAB_RADIUS_PX = 40;
 
@@ -25,6 +24,7 @@ export class LapPlayer {
   #seconds = 0;
   /** The camera's closeness while the robot is dragged: it stays under the hand. */
   #heldCloseness: number | undefined;
+  #wasDragged = false;
   #isPlaying = false;
   #isSeen = false;
   #lastFrame: number | undefined;
@@ -101,6 +101,7 @@ export class LapPlayer {
       if (event.button !== 0 || !isNear(event)) return;
       canvas.setPointerCapture(event.pointerId);
       this.#heldCloseness = this.#moment().closeness;
+      this.#wasDragged = true;
       this.#stop();
       ahead = 1;
     });
@@ -189,8 +190,10 @@ export class LapPlayer {
     const width = this.#canvas.clientWidth;
     const context = contextOf(this.#canvas, width / aspectAt(width));
     if (context === undefined) return;
-    this.#inks ??= readInks(this.#figure, INKS);
-    draw(this.#story, this.#moment(), canvasSurface(context, this.#inks), width);
+    this.#inks ??= readInks(this.#figure);
+    const [moment, surface] = [this.#moment(), canvasSurface(context, this.#inks)];
+    draw(this.#story, moment, surface, width);
+    if (this.#heldCloseness === undefined) drawGrip(moment, surface, width, this.#isPlaying || this.#wasDragged ? '' : 'drag me');
   }
 }
 

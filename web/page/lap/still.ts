@@ -1,14 +1,17 @@
 // The still picture of the strip: shown until its script has started, or without scripts.
 
-import { ASPECT, draw, type Surface } from './drawing';
+import type { Inks, Surface } from '../world/surfaces';
+import { SvgSurface } from '../world/svg';
+import { ASPECT, draw } from './drawing';
 import { Replay, type Story } from './story';
-import { SvgSurface, type Inks } from './surfaces';
 
 const WIDTH = 900;
+/** As wide as a soft dot. */
+const CELL_PX = 4;
 
 /** The moment before the first loop closes, as an SVG. */
 export function still(story: Story, inks: Inks): string {
-  const surface = new SvgSurface(inks);
+  const surface = new SvgSurface(inks, CELL_PX);
   drawDoubled(story, surface, WIDTH);
   return surface.file(WIDTH, WIDTH / ASPECT);
 }

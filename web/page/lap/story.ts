@@ -1,14 +1,11 @@
 // The recorded lap, and its state at each second of the replay.
 
-/** `[x, y, θ]` in the world frame, metres and radians. */
-export type Pose = readonly [number, number, number];
-/** `[x, y]` in metres. */
-export type Point = readonly [number, number];
+import type { Point, Pose } from '../world/surfaces';
 
 /** The output of the module's `lapStory`. */
 export interface Story {
   walls: [number, number, number, number][];
-  ticks: { truth: Pose; wheels: Pose; estimate: Pose; sweep: number[] }[];
+  ticks: { wheels: Pose; estimate: Pose; sweep: number[] }[];
   /** The tick of each keyframe. */
   keyframes: number[];
   /** Poses of all keyframes, valid from a tick on. */
@@ -37,7 +34,7 @@ export interface Moment {
   robot: Pose;
   keyframes: readonly Pose[];
   /** The path by odometry so far. */
-  wheels: readonly Point[];
+  wheels: readonly Pose[];
   /** The closed loops, as indices of keyframes. */
   closed: readonly { from: number; to: number }[];
   /** The poses before the last correction; `strength` fades out after it. */
@@ -111,17 +108,17 @@ export class Replay {
     const share = clamp((seconds - segment.fromS) / (segment.toS - segment.fromS));
     const tick = segment.fromTick + share * (segment.toTick - segment.fromTick);
     const { ticks, loops } = this.#story;
-    const wheels = ticks.slice(0, Math.floor(tick) + 1).map(({ wheels: [x, y] }): Point => [x, y]);
-    const [x, y] = between(this.#tickAt(tick).wheels, this.#tickAt(tick + 1).wheels, tick % 1);
+    const wheels = ticks.slice(0, Math.floor(tick) + 1).map(({ wheels: pose }) => pose);
+    const last = between(this.#tickAt(tick).wheels, this.#tickAt(tick + 1).wheels, tick % 1);
     const started = segment.epoch + (segment.closes ? 1 : 0);
     const robot = this.#robot(tick, segment, share);
-    const toLeft = ZOOM.fromX - Math.max(x, robot[0]);
+    const toLeft = ZOOM.fromX - Math.max(last[0], robot[0]);
     return {
       act: segment.act,
       tick: Math.floor(tick + 1e-9),
       robot,
       keyframes: this.#poses(segment, tick, share),
-      wheels: [...wheels, [x, y]],
+      wheels: [...wheels, last],
       closed: loops.slice(0, started),
       moved: this.#moved(segment, seconds, tick),
       before: { poses: this.#story.epochs[0]?.poses ?? [], strength: ease((seconds - (this.lengthS - END_S)) / FADE_IN_S) },

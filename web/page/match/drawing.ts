@@ -1,7 +1,9 @@
 // The SVG of the matcher, with the two sweeps of a room. The build puts that of the first room into the page; the script
 // moves the source sweep.
 
-import type { Point, Pose } from '../lap/story';
+import { floor, robot, type Segment, seen, threads, type View } from '../world/plan';
+import type { Point, Pose } from '../world/surfaces';
+import { STYLED, SvgSurface } from '../world/svg';
 
 export interface Answer {
   /** The true pose of the source sweep. */
@@ -36,8 +38,14 @@ export const ROOMS: readonly [Room, ...Room[]] = [
 ];
 /** Radius of the ring that turns the source. */
 const RING_M = 1.3;
-/** Half the size of a cross. */
-const MARK_M = 0.06;
+/** The drawing's pixels, as on a phone: nothing is smaller on a screen. Metres point up in the groups around it. */
+const VIEW: View = { to: ([x, y]) => [50 * x, 50 * y], pxPerM: 50, isSmall: false };
+const SCALE = `scale(${1 / VIEW.pxPerM})`;
+/** Opacity of the area of the sweep in the hand at the sensor, and at a distance, m. */
+const SEEN = { alphas: [0.27, 0.13], rangeM: 3.2 } as const;
+const POINT_PX = 2.4;
+/** Radius in which a finger takes the knob. */
+const FINGER_M = 22 / VIEW.pxPerM;
 
 export function startOf({ truth: [x, y, heading] }: Answer, { off: [right, up, degrees] }: Room): Pose {
   return [x + right, y + up, heading + (degrees * Math.PI) / 180];
@@ -60,40 +68,57 @@ export function viewBox({ view: [left, top, side] }: Room): string {
 
 /** The contents of the SVG with the source at its first pose. */
 export function sweeps(scene: Scene, room: Room): string {
-  const crosses = points(scene.target).map(([x, y]) => {
-    const [m, span] = [MARK_M, 2 * MARK_M];
-    return `M${short(x - m)} ${short(y - m)}l${span} ${span}m0-${span}l-${span} ${span}`;
-  });
-  const squares = points(scene.source).map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
+  const [target, source] = [points(scene.target), points(scene.source)];
+  const targets = target.map(VIEW.to);
+  const sources = source.map(VIEW.to);
   const at = placedAt(startOf(scene, room));
+  const grabs = source.map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
+  // The order of the points is that of the beams.
   return `<title id="match-name">Two sweeps of one room, to be aligned</title>
       <g transform="scale(1 -1)">
-        <path class="match-target" d="${crosses.join('')}"/>
-        <path class="match-source match-left" d="${squares}" transform="${at}" visibility="hidden"/>
+        ${drawn((surface) => floor(surface, VIEW, target))}
+        <g class="match-moved" transform="${at}">${drawn((surface) => seen(surface, VIEW, [0, 0], source, 'posterior', SEEN.alphas, SEEN.rangeM))}</g>
+        <g class="match-target">${drawn((surface) => surface.discs(targets, 'measurement', POINT_PX))}</g>
+        <g class="match-left" transform="${at}" visibility="hidden">${drawn((surface) => surface.discs(sources, 'posterior', POINT_PX))}</g>
         <path class="match-pairs" d=""/>
+        <g class="match-threads"></g>
         <g class="match-moved" transform="${at}">
-          <path class="match-source" d="${squares}"/>
+          <g class="match-source">${drawn((surface) => {
+            surface.discs(sources, 'paper', POINT_PX + 0.6);
+            surface.discs(sources, 'posterior', POINT_PX);
+          })}</g>
           <circle class="match-grab" data-grab="move" r="${RING_M}"/>
-          <path class="match-grab match-near" data-grab="move" d="${squares}"/>
+          <path class="match-grab match-near" data-grab="move" d="${grabs}"/>
           <circle class="match-ring" r="${RING_M}"/>
           <circle class="match-grab match-near" data-grab="turn" r="${RING_M}"/>
-          <circle class="match-knob" data-grab="turn" cx="${RING_M}" r="0.15"/>
-          <path class="match-robot" d="M0.22 0L-0.15 0.14V-0.14Z"/>
+          <circle class="match-halo" cx="${RING_M}" r="0.3"/>
+          <circle class="match-grab" data-grab="turn" cx="${RING_M}" r="${FINGER_M}"/>
+          <circle class="match-knob" data-grab="turn" cx="${RING_M}" r="0.17"/>
+          <g class="match-robot">${drawn((surface) => robot(surface, VIEW, [0, 0, 0], 'posterior'))}</g>
         </g>
       </g>`;
 }
 
-/** A line from each point of the source to the nearest of the target within the reach, which ICP pairs it with. */
-export function pairLines({ target, source }: Scene, [x, y, heading]: Pose, reachM: number): string {
+function drawn(draw: (surface: SvgSurface) => void): string {
+  const surface = new SvgSurface(STYLED);
+  draw(surface);
+  return `<g transform="${SCALE}">${surface.text}</g>`;
+}
+
+/** The pairs of ICP, each from a point of the source to the nearest of the target within the reach: their lines, and drawn. */
+export function pairLines({ target, source }: Scene, [x, y, heading]: Pose, reachM: number): { lines: string; threads: string } {
   const [cos, sin] = [Math.cos(heading), Math.sin(heading)];
   const targets = points(target);
-  const line = ([along, aside]: Point): string => {
+  const pairs = points(source).flatMap(([along, aside]): Segment[] => {
     const from: Point = [x + cos * along - sin * aside, y + sin * along + cos * aside];
     const far = ([toX, toY]: Point): number => Math.hypot(toX - from[0], toY - from[1]);
     const nearest = targets.reduce((best, one) => (far(one) < far(best) ? one : best), targets[0] ?? from);
-    return far(nearest) <= reachM ? `M${from.map(short).join(' ')}L${nearest.map(short).join(' ')}` : '';
+    return far(nearest) <= reachM ? [[from, nearest]] : [];
+  });
+  return {
+    lines: pairs.map(([from, to]) => `M${from.map(short).join(' ')}L${to.map(short).join(' ')}`).join(''),
+    threads: drawn((surface) => threads(surface, VIEW, pairs, reachM)),
   };
-  return points(source).map(line).join('');
 }
 
 function points(numbers: readonly number[]): Point[] {

@@ -1,7 +1,8 @@
 // The matcher: the reader aligns one sweep with another, and ICP refines the pose. Who wins enters the next room.
 
 import type { Glue } from '../../pkg/glue.js';
-import { type Point, type Pose, between } from '../lap/story';
+import { between } from '../lap/story';
+import type { Point, Pose } from '../world/surfaces';
 import { pngOfSvg, send } from '../../ts/export';
 import { type Answer, pairLines, placedAt, ROOMS, type Scene, startOf, sweeps, viewBox } from './drawing';
 import { recordOf } from './record';
@@ -74,7 +75,11 @@ export class MatchFigure {
         if (this.#pointers.delete(event.pointerId) && this.#pointers.size === 0) this.#announcePose();
       });
     }
-    svg.addEventListener('keydown', (event) => this.#press(event));
+    svg.addEventListener('keydown', (event) => {
+      svg.classList.remove('held');
+      this.#press(event);
+    });
+    svg.addEventListener('blur', () => svg.classList.remove('held'));
     const presses = {
       icp: () => void this.#runIcp(),
       quarter: () => {
@@ -103,6 +108,8 @@ export class MatchFigure {
     const grab = (event.target as Element).closest<SVGElement>('[data-grab]');
     if (grab === null || event.button !== 0) return;
     event.preventDefault();
+    // Browsers show the ring of a focus that a script sets: it is for the keyboard.
+    this.#svg.classList.add('held');
     this.#svg.focus({ preventScroll: true });
     this.#svg.setPointerCapture(event.pointerId);
     if (this.#pointers.size === 0) this.#turns = grab.dataset['grab'] === 'turn';
@@ -158,7 +165,7 @@ export class MatchFigure {
     this.#begun ??= performance.now();
     this.#pose = pose;
     this.#showGhost(undefined);
-    this.#showPairs('');
+    this.#showPairs();
     this.#showWon(false);
     this.#show();
   }
@@ -200,8 +207,8 @@ export class MatchFigure {
     const still = this.#svg.cloneNode(true) as SVGSVGElement;
     const shown = this.#svg.querySelectorAll('*');
     for (const [at, part] of still.querySelectorAll('*').entries()) {
-      const { fill, stroke, strokeWidth, strokeLinecap, opacity } = getComputedStyle(shown[at] as Element);
-      Object.assign((part as SVGElement).style, { fill, stroke, strokeWidth, strokeLinecap, opacity });
+      const { fill, stroke, strokeWidth, strokeLinecap, opacity, stopColor } = getComputedStyle(shown[at] as Element);
+      Object.assign((part as SVGElement).style, { fill, stroke, strokeWidth, strokeLinecap, opacity, stopColor });
     }
     still.style.background = getComputedStyle(document.body).backgroundColor;
     for (const [name, value] of Object.entries({ xmlns: 'http://www.w3.org/2000/svg', width: side, height: side })) {
@@ -270,7 +277,7 @@ export class MatchFigure {
   }
 
   #show(): void {
-    this.#svg.querySelector('.match-moved')?.setAttribute('transform', placedAt(this.#pose));
+    for (const part of this.#svg.querySelectorAll('.match-moved')) part.setAttribute('transform', placedAt(this.#pose));
     this.#figure.classList.toggle('home', this.#isHome());
     this.#readout('');
   }
@@ -282,8 +289,10 @@ export class MatchFigure {
     if (pose !== undefined) ghost?.setAttribute('transform', placedAt(pose));
   }
 
-  #showPairs(lines: string): void {
+  #showPairs({ lines, threads } = { lines: '', threads: '' }): void {
     this.#svg.querySelector('.match-pairs')?.setAttribute('d', lines);
+    const drawn = this.#svg.querySelector('.match-threads');
+    if (drawn !== null) drawn.innerHTML = threads;
   }
 
   /** Offers the next room in place of ICP, and the way back when the reader moves the sweep again. */
