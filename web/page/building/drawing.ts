@@ -41,10 +41,10 @@ export function draw(story: Building, at: number, surface: Surface, width: numbe
   const to = ([x, y]: Point): Point => [width / 2 + fit.scale * (x - fit.x), height / 2 - fit.scale * (y - fit.y)];
   const view: View = { to, pxPerM: 100 * fit.scale, isSmall: width < SMALL_PX || fit.scale < SMALL_PX_PER_CM };
   const placeOf = ([x, y]: Pose): Point => [x, y];
-  if (at > 0) surface.lines([story.wheels.map((pose) => to(placeOf(pose)))], 'prediction', 1.75, { alpha: 0.7, dash: [5, 4] });
+  surface.lines([story.wheels.map((pose) => to(placeOf(pose)))], 'prediction', 1.75, { alpha: at === 0 ? 1 : 0.7, dash: [5, 4] });
   map(surface, view, onPicture(pointsOf(story, poses), to, width, height), 'map-old');
   const ink = at === 0 ? 'prediction' : 'posterior';
-  path(surface, view, poses.map(placeOf), ink);
+  if (at > 0) path(surface, view, poses.map(placeOf), ink);
   surface.fade([width, height], [FADE_PX, FADE_PX]);
   const last = poses.at(-1);
   if (last === undefined) return;

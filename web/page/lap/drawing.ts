@@ -20,6 +20,8 @@ const CLOSE = { x: 4.9, y: 4.7, width: 9.3 };
 const WALL_LABELS = { out: [2.1, 5.35], back: [7.6, 5.35] } as const;
 /** At this width the correction is as large as given; at others it scales, within limits. */
 const REFERENCE_WIDTH_PX = 900;
+/** At the start both robots stand at one place. */
+const FIRST_LABELS_TICK = 5;
 /** Opacity of a sweep's area at the sensor and at its range, m. */
 const SEEN = { alphas: [0.3, 0.06], rangeM: 6 } as const;
 /** Where the world ends in the page, as shares of the height: at all sides of a close-up, above and below the whole. */
@@ -86,8 +88,9 @@ function drawCorrection({ before, keyframes }: Moment, surface: Surface, { isSma
 
 const labelSize = ({ isSmall }: View): number => (isSmall ? 14 : 17);
 
-/** Labels each path at its end. */
+/** Labels each path at its end, once there is one. */
 function drawPathLabels(moment: Moment, surface: Surface, view: View): void {
+  if (moment.tick < FIRST_LABELS_TICK) return;
   const size = labelSize(view);
   const away = gripPx(view) + size;
   const ofRobot = view.to([moment.robot[0], moment.robot[1]]);

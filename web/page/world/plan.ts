@@ -25,7 +25,7 @@ const TRACK_M = 0.165;
 /** Neighbouring returns of a sweep that are farther apart, in angle and in distance, have no wall between them. */
 const GAP = { rad: 0.2, m: 0.5 };
 /** Side of a cell of a map. */
-const CELL = { m: 0.025, leastPx: 1.25 };
+const CELL = { m: 0.025, leastPx: 1 };
 /** How far the ring that says that a thing can be taken is from it. */
 const GRIP_PX = 9;
 
