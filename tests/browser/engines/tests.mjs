@@ -16,6 +16,9 @@ import { WATCH, WATCH_TEXT, ask, click, clickButton, clickControl, live, loaded,
 /** Frames of the page in which a widget has heard of a drag that has ended. */
 const FRAMES_AFTER_DRAG = 6;
 
+/** The widgets that lose a context: what replaces it is the same for all, and each takes a second or more. */
+const LOSING = ['w16.1', 'w16.3', 'w16.10'];
+
 /** A page with `body`, and one with it in a sandbox. */
 const WIDGETS = h.schema.map(({ id }) => `<div style="padding-bottom: 80vh"><slam-widget name="${id}" more="on"></slam-widget></div>`).join('');
 const PAGES = {
@@ -106,7 +109,7 @@ export function testIn(name, open, problem) {
       }
     });
 
-    test('every widget starts, follows the pointer and the keyboard, plays, recovers from a lost context, and concludes what it does natively', async (context) => {
+    test('every widget starts, follows the pointer and the keyboard, plays, and concludes what it does natively; three recover from a lost context', async (context) => {
       await visit('/widgets.html');
       for (const widget of h.schema) {
         await context.test(widget.id, async () => {
@@ -116,7 +119,7 @@ export function testIn(name, open, problem) {
           await followsPointer(page, widget.id, expected.timeline.param);
           await followsKeyboard(page, widget);
           await plays(page, widget);
-          await recovers(page, widget.id);
+          if (LOSING.includes(widget.id)) await recovers(page, widget.id);
           await concludes(page, widget.id, expected);
         });
       }
