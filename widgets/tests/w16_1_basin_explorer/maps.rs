@@ -150,7 +150,7 @@ fn after_the_run_an_arc_shows_the_turns_that_end_right() {
     let right = right.count();
     assert!((10..100).contains(&right), "{right}");
     assert_eq!(arc(&model), right);
-    // `ch16 basin --variant p2p --heading-deg=-39:33:3` ends right from −36° to 30°.
+    // `ch16 basin --heading-deg=-39:33:3 --dx 0 --dy 0` ends right from −36° to 30°.
     let layers = panel_of(&model, panel::SWEEPS).layers;
     let is_named = |layer: &Layer| matches!(layer, Layer::Label { text, .. } if text == "home from −36° to 30°");
     assert!(layers.iter().any(is_named));
