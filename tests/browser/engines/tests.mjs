@@ -356,10 +356,16 @@ async function followsPointer(page, id, moment) {
   }, id, moment);
   for (const { x, y } of spots) {
     const earlier = await values();
+    // WebKit may answer before its page has heard of a release.
+    await ask(page, () => {
+      window.isReleased = false;
+      addEventListener('pointerup', () => { window.isReleased = true; }, { capture: true, once: true });
+    });
     await page.move(x, y);
     await page.down();
     for (const step of [6, 14, 24, 36]) await page.move(x + step, y + step / 3);
     await page.up();
+    await until(page, () => window.isReleased);
     await page.evaluate(`(async () => { for (let frame = 0; frame < ${FRAMES_AFTER_DRAG}; frame += 1) await new Promise(requestAnimationFrame); })()`);
     if ((await values()) !== earlier) return;
   }
