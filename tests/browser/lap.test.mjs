@@ -219,7 +219,7 @@ describe('the lap under the title', () => {
       await tab.mouse.move(x + 0.5 * width, y + height / 2, { steps: 20 });
       const out = await tick(tab);
       assert.ok(out > 20 && out < 50, `tick ${out}`);
-      await tab.mouse.move(x + 0.95 * width, y + height / 2, { steps: 20 });
+      await tab.mouse.move(x + 0.99 * width, y + height / 2, { steps: 20 });
       const turned = await tick(tab);
       await tab.mouse.move(x + 0.6 * width, y + height / 2, { steps: 30 });
       const back = await tick(tab);

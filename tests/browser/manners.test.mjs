@@ -36,7 +36,7 @@ describe('focus', () => {
       await h.ready(tab);
       await tab.focus('#before');
       const stops = await tabUntil(tab, 'Tab', 'after');
-      assert.ok(stops > 5, `${stops} stops within the widget`);
+      assert.ok(stops > 4, `${stops} stops within the widget`);
       assert.equal(await tabUntil(tab, 'Shift+Tab', 'before'), stops);
     });
   });
@@ -122,7 +122,7 @@ describe('touch', () => {
       await h.ready(tab);
       const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
       const onRail = async () => {
-        const { x, y, width } = await sliderRail(tab, 'heading');
+        const { x, y, width } = await sliderRail(tab, 'iteration');
         return [x + width / 2, y];
       };
       for (const spot of [() => draggingSpot(tab), onRail]) {
@@ -168,7 +168,7 @@ describe('touch', () => {
       await h.ready(tab);
       const { touch } = await fingers(tab);
       const query = () => tab.evaluate(() => document.querySelector('slam-widget').query);
-      const rail = await sliderRail(tab, 'heading');
+      const rail = await sliderRail(tab, 'iteration');
       const onRail = [rail.x + 0.3 * rail.width, rail.y];
       for (const [x, y] of [await cloudSpot(tab), onRail]) {
         const untouched = await query();

@@ -110,10 +110,15 @@ export class LapPlayer {
         canvas.style.cursor = isNear(event) ? 'grab' : '';
         return;
       }
-      const pointer = worldAt([event.offsetX, event.offsetY], this.#moment().closeness, canvas.clientWidth);
-      const next = this.#replay.nearest(pointer, this.#seconds, ahead);
-      if (next !== this.#seconds) ahead = Math.sign(next - this.#seconds);
-      this.#goTo(next);
+      // A busy browser joins moves; the robot follows each, or it would stay behind a fast hand.
+      let at = this.#seconds;
+      for (const { offsetX, offsetY } of movesOf(event)) {
+        const pointer = worldAt([offsetX, offsetY], this.#moment().closeness, canvas.clientWidth);
+        const next = this.#replay.nearest(pointer, at, ahead);
+        if (next !== at) ahead = Math.sign(next - at);
+        at = next;
+      }
+      this.#goTo(at);
     });
     for (const type of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(type, () => {
       ahead = 0;
@@ -199,4 +204,10 @@ export class LapPlayer {
 
 function nameOf(act: HTMLElement | undefined): string {
   return act?.querySelector('b')?.textContent?.replace(/\.$/, '') ?? '';
+}
+
+/** The moves that an event stands for. Safari before 18.2 does not tell them. */
+function movesOf(event: PointerEvent): PointerEvent[] {
+  const moves = 'getCoalescedEvents' in event ? event.getCoalescedEvents() : [];
+  return moves.length > 0 ? moves : [event];
 }

@@ -128,7 +128,7 @@ fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f6
     let trust = TrustConfig {
         sigma_m: SIGMA_M,
         covariance_scale: 1.0,
-        ..TrustConfig::default()
+        information_cap: f64::INFINITY,
     };
     let information = match_information(&pairs, &found.pose, &trust);
     let position = information
