@@ -88,19 +88,18 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
   .tools { order: 1; }
   .first { align-self: center; margin-inline-start: 1rem; }
   .first .control { flex-wrap: nowrap; }
-  .first .name { flex: none; }
 }
 @container (width < 30rem) {
   .controls { row-gap: 0.15rem; padding-block: 0.1rem 0.25rem; }
-  [data-control='play'] { min-height: 2.125rem; }
-  .controls:not(:has(.first > :not([hidden]))) { grid-template: "transport transport" "verdict tools" / minmax(0, 1fr) auto; }
-  .controls:not(:has(.first > :not([hidden]))) .tools { flex-direction: column; align-items: stretch; }
   .tools .control button, .menu summary { width: 100%; }
-  .first .control { gap: 0.5rem; }
-  .first .name { flex: none; }
   .transport:not(:has(.do ~ .do)) .name { position: absolute; clip-path: inset(50%); }
 }
+@container (20rem <= width < 30rem) {
+  .controls:not(:has(.first > :not([hidden]))) { grid-template: "transport transport" "verdict tools" / minmax(0, 1fr) auto; }
+  .controls:not(:has(.first > :not([hidden]))) .tools { flex-direction: column; align-items: stretch; }
+}
 @media (width < 30rem) { .title { padding: 0.35rem 0.75rem 0.1rem; font-size: 1rem; } .verdict { min-height: 3em; } .title span { display: none; } }
+.first .name { flex: none; }
 .transport, .presets, .actions, .zoom { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; align-items: center; }
 [data-control='play'] { min-width: 5.5rem; min-height: 2.5rem; background: var(--accent); color: var(--paper); font-weight: 600; }
 .tools { display: flex; gap: 0.4rem; align-items: start; }
