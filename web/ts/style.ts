@@ -83,10 +83,10 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .verdict { grid-area: verdict; min-height: 4.2em; }
 @container (width >= 30rem) {
   /* Two rows: no two of these have room beside each other. */
-  .controls { display: flex; flex-wrap: wrap; row-gap: 0.4rem; }
+  .controls { display: flex; flex-wrap: wrap; gap: 0.4rem 1.25rem; }
   :is(.transport, .verdict) { flex: 1 1 55%; min-width: 0; }
   .tools { order: 1; }
-  .first { align-self: center; margin-inline-start: 1rem; }
+  .first { align-self: center; }
   .first .control { flex-wrap: nowrap; }
 }
 @container (width < 30rem) {
