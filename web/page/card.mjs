@@ -57,8 +57,8 @@ export function card(draw, inks) {
     discs(points, ink, radius) {
       for (const [x, y] of lower(points)) fill(circle(x, y, radius), inks[ink]);
     },
-    mist(points, ink, radius) {
-      for (const [x, y] of lower(points)) fill(circle(x, y, 0.6 * radius), inks[ink], 0.3);
+    mist(points, ink, side) {
+      for (const [x, y] of lower(points)) fill(circle(x, y, 0.6 * side), inks[ink], 0.3);
     },
     fade(_size, [, above]) {
       for (let y = 0; y < above; y += 1) {

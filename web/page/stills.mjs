@@ -49,13 +49,12 @@ function withShortSweeps(story) {
 
 /** The walls of the lap's world, in metres that point up. */
 async function drawPlan({ walls: segments }) {
-  const [{ ground, walls }, { STYLED, SvgSurface }] = await Promise.all(['world/plan.ts', 'world/svg.ts'].map(load));
-  const surface = new SvgSurface(STYLED);
-  const view = { to: ([x, y]) => [50 * x, 50 * y], pxPerM: 50, isSmall: false };
+  const [{ ground, walls }, { inMetres, METRES }] = await Promise.all(['world/plan.ts', 'world/svg.ts'].map(load));
   const ends = segments.map(([x0, y0, x1, y1]) => [[x0, y0], [x1, y1]]);
-  ground(surface, view, ends);
-  walls(surface, view, ends);
-  return `<g transform="scale(${1 / view.pxPerM})">${surface.text}</g>`;
+  return inMetres((surface) => {
+    ground(surface, METRES, ends);
+    walls(surface, METRES, ends);
+  });
 }
 
 async function drawStory(name, story, outDir) {

@@ -91,12 +91,12 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 }
 @container (width < 30rem) {
   .controls { row-gap: 0.15rem; padding-block: 0.1rem 0.25rem; }
-  .tools .control button, .menu summary { width: 100%; }
   .transport:not(:has(.do ~ .do)) .name { position: absolute; clip-path: inset(50%); }
 }
 @container (20rem <= width < 30rem) {
   .controls:not(:has(.first > :not([hidden]))) { grid-template: "transport transport" "verdict tools" / minmax(0, 1fr) auto; }
   .controls:not(:has(.first > :not([hidden]))) .tools { flex-direction: column; align-items: stretch; }
+  .tools .control button, .menu summary { width: 100%; }
 }
 @media (width < 30rem) { .title { padding: 0.35rem 0.75rem 0.1rem; font-size: 1rem; } .verdict { min-height: 3em; } .title span { display: none; } }
 .first .name { flex: none; }
@@ -151,7 +151,7 @@ input[type='range']::-moz-range-track { height: 6px; border-radius: 3px; ${RAIL}
 input[type='range']::-webkit-slider-thumb { appearance: none; margin-top: -6px; ${THUMB} }
 input[type='range']::-moz-range-thumb { ${THUMB} }
 @media (forced-colors: active) { input[type='range'] { appearance: auto; } }
-.marks { position: absolute; inset: 0 8px; pointer-events: none; }
+.marks { position: absolute; inset: 0 9px; pointer-events: none; }
 .marks i { position: absolute; left: calc(var(--at) * 100%); width: 2px; height: 0.5rem; top: calc(50% - 0.25rem); background: var(--soft); }
 .marks .good { top: 0; background: var(--good); }
 .marks :is(.bad, .doubtful) { top: auto; bottom: 0; background: var(--bad); }

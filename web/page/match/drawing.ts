@@ -1,9 +1,9 @@
 // The SVG of the matcher, with the two sweeps of a room. The build puts that of the first room into the page; the script
 // moves the source sweep.
 
-import { floor, robot, type Segment, seen, threads, type View } from '../world/plan';
+import { floor, robot, type Segment, seen, threads } from '../world/plan';
 import type { Point, Pose } from '../world/surfaces';
-import { STYLED, SvgSurface } from '../world/svg';
+import { inMetres, METRES } from '../world/svg';
 
 export interface Answer {
   /** The true pose of the source sweep. */
@@ -38,14 +38,11 @@ export const ROOMS: readonly [Room, ...Room[]] = [
 ];
 /** Radius of the ring that turns the source. */
 const RING_M = 1.3;
-/** The drawing's pixels, as on a phone: nothing is smaller on a screen. Metres point up in the groups around it. */
-const VIEW: View = { to: ([x, y]) => [50 * x, 50 * y], pxPerM: 50, isSmall: false };
-const SCALE = `scale(${1 / VIEW.pxPerM})`;
 /** Opacity of the area of the sweep in the hand at the sensor, and at a distance, m. */
 const SEEN = { alphas: [0.27, 0.13], rangeM: 3.2 } as const;
 const POINT_PX = 2.4;
 /** Radius in which a finger takes the knob. */
-const FINGER_M = 22 / VIEW.pxPerM;
+const FINGER_M = 22 / METRES.pxPerM;
 
 export function startOf({ truth: [x, y, heading] }: Answer, { off: [right, up, degrees] }: Room): Pose {
   return [x + right, y + up, heading + (degrees * Math.PI) / 180];
@@ -69,21 +66,21 @@ export function viewBox({ view: [left, top, side] }: Room): string {
 /** The contents of the SVG with the source at its first pose. */
 export function sweeps(scene: Scene, room: Room): string {
   const [target, source] = [points(scene.target), points(scene.source)];
-  const targets = target.map(VIEW.to);
-  const sources = source.map(VIEW.to);
+  const targets = target.map(METRES.to);
+  const sources = source.map(METRES.to);
   const at = placedAt(startOf(scene, room));
   const grabs = source.map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
   // The order of the points is that of the beams.
   return `<title id="match-name">Two sweeps of one room, to be aligned</title>
       <g transform="scale(1 -1)">
-        ${drawn((surface) => floor(surface, VIEW, target))}
-        <g class="match-moved" transform="${at}">${drawn((surface) => seen(surface, VIEW, [0, 0], source, 'posterior', SEEN.alphas, SEEN.rangeM))}</g>
-        <g class="match-target">${drawn((surface) => surface.discs(targets, 'measurement', POINT_PX))}</g>
-        <g class="match-left" transform="${at}" visibility="hidden">${drawn((surface) => surface.discs(sources, 'posterior', POINT_PX))}</g>
+        ${inMetres((surface) => floor(surface, METRES, target))}
+        <g class="match-moved" transform="${at}">${inMetres((surface) => seen(surface, METRES, [0, 0], source, 'posterior', SEEN.alphas, SEEN.rangeM))}</g>
+        <g class="match-target">${inMetres((surface) => surface.discs(targets, 'measurement', POINT_PX))}</g>
+        <g class="match-left" transform="${at}" visibility="hidden">${inMetres((surface) => surface.discs(sources, 'posterior', POINT_PX))}</g>
         <path class="match-pairs" d=""/>
         <g class="match-threads"></g>
         <g class="match-moved" transform="${at}">
-          <g class="match-source">${drawn((surface) => {
+          <g class="match-source">${inMetres((surface) => {
             surface.discs(sources, 'paper', POINT_PX + 0.6);
             surface.discs(sources, 'posterior', POINT_PX);
           })}</g>
@@ -94,15 +91,9 @@ export function sweeps(scene: Scene, room: Room): string {
           <circle class="match-halo" cx="${RING_M}" r="0.3"/>
           <circle class="match-grab" data-grab="turn" cx="${RING_M}" r="${FINGER_M}"/>
           <circle class="match-knob" data-grab="turn" cx="${RING_M}" r="0.17"/>
-          <g class="match-robot">${drawn((surface) => robot(surface, VIEW, [0, 0, 0], 'posterior'))}</g>
+          <g class="match-robot">${inMetres((surface) => robot(surface, METRES, [0, 0, 0], 'posterior'))}</g>
         </g>
       </g>`;
-}
-
-function drawn(draw: (surface: SvgSurface) => void): string {
-  const surface = new SvgSurface(STYLED);
-  draw(surface);
-  return `<g transform="${SCALE}">${surface.text}</g>`;
 }
 
 /** The pairs of ICP, each from a point of the source to the nearest of the target within the reach: their lines, and drawn. */
@@ -117,7 +108,7 @@ export function pairLines({ target, source }: Scene, [x, y, heading]: Pose, reac
   });
   return {
     lines: pairs.map(([from, to]) => `M${from.map(short).join(' ')}L${to.map(short).join(' ')}`).join(''),
-    threads: drawn((surface) => threads(surface, VIEW, pairs, reachM)),
+    threads: inMetres((surface) => threads(surface, METRES, pairs, reachM)),
   };
 }
 

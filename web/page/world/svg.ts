@@ -1,5 +1,6 @@
 // The surface of the still pictures, and of those that a style sheet colours.
 
+import type { View } from './plan';
 import { FONT, type Ink, type Inks, type Point, type Stroke, type Surface, TAB, inkForWords } from './surfaces';
 
 /** Opacity of a cell of a map with at least that many returns. */
@@ -12,6 +13,18 @@ export const STYLED = new Proxy({} as Inks, { get: (_, ink) => `var(--${String(i
 export function declared(svg: string, palette: Readonly<Record<string, readonly string[]>>, theme: 0 | 1): string {
   const used = new Set([...svg.matchAll(/var\(--([a-z0-9-]+)\)/g)].map(([, ink = '']) => ink));
   return [...used].map((ink) => `--${ink}:${palette[ink]?.[theme]}`).join(';');
+}
+
+/** Pixels a metre of {@link inMetres}, as on a phone: nothing is smaller on a screen. */
+const PX_PER_M = 50;
+/** What {@link inMetres} draws: its metres point up in the groups around it. */
+export const METRES: View = { to: ([x, y]) => [PX_PER_M * x, PX_PER_M * y], pxPerM: PX_PER_M, isSmall: false };
+
+/** A part of an SVG in metres, in the colours of the style sheet. */
+export function inMetres(draw: (surface: SvgSurface) => void): string {
+  const surface = new SvgSurface(STYLED);
+  draw(surface);
+  return `<g transform="scale(${1 / PX_PER_M})">${surface.text}</g>`;
 }
 
 /** Collects the elements of an SVG in `text`. */
@@ -53,7 +66,7 @@ export class SvgSurface implements Surface {
   }
 
   /** Every cell that a point falls into, once, as runs of its row: a tenth of the file of circles. */
-  mist(points: readonly Point[], ink: Ink, _radius: number, alpha = 1): void {
+  mist(points: readonly Point[], ink: Ink, _side: number, alpha = 1): void {
     const side = this.#cellPx;
     const counts = new Map<string, number>();
     for (const at of points) {

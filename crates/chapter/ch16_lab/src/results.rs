@@ -6,9 +6,7 @@ use pr_geom::sort_numbers;
 use serde::{Deserialize, Serialize};
 
 use crate::incremental::{IncrementalOutcome, IncrementalTrace};
-use crate::lap::{
-    AcceptedShares, IncrementalKind, LapRecord, LapSummary, PATH_SHARES, PathErrors, TestedLoop,
-};
+use crate::lap::{AcceptedShares, IncrementalKind, LapRecord, LapSummary, PATH_SHARES, PathErrors};
 
 /// A column of the results table: the estimator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,11 +111,7 @@ impl LapOutcome {
             loops: record.lap.graph_summary.loops,
             lap_way: record.path_errors(),
             front_end_way: record.front_end_path_errors(),
-            attempts: AcceptedShares::of(
-                &record.lap.tested_loops().collect::<Vec<_>>(),
-                TestedLoop::is_false,
-                |tested| tested.accepted,
-            ),
+            attempts: record.lap.accepted_shares(),
             digest: record.digest(),
             incremental_runs: [None; IncrementalKind::ALL.len()],
         }

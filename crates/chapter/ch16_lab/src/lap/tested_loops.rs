@@ -46,6 +46,13 @@ impl LapTrace {
             }
         })
     }
+
+    /// Its attempts to close a loop, true and false, and those that were accepted.
+    #[must_use]
+    pub fn accepted_shares(&self) -> AcceptedShares {
+        let tested: Vec<_> = self.tested_loops().collect();
+        AcceptedShares::of(&tested, TestedLoop::is_false, |tested| tested.accepted)
+    }
 }
 
 /// Accepted attempts beside all attempts, of the true loops and of the false ones.

@@ -1,8 +1,6 @@
 //! Both gates of every loop: their verdicts, their regions, and what each accepts.
 
-use ch16_lab::lap::{
-    AcceptedShares, FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement, TestedLoop,
-};
+use ch16_lab::lap::{AcceptedShares, FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
 use ch16_slam2d::loops::{GateModel, LoopVerification};
 use widget_kit::scene::Stroke;
 
@@ -134,10 +132,7 @@ fn the_exact_gate_accepts_more_true_and_more_false_loops() {
         set(&mut model, "seed", f64::from(seed));
         for (gate_model, attempts) in (0_u8..).zip(&mut attempts) {
             set(&mut model, "gate-model", f64::from(gate_model));
-            let tested: Vec<_> = model.runs.graph.lap().tested_loops().collect();
-            let of_lap =
-                AcceptedShares::of(&tested, TestedLoop::is_false, |tested| tested.accepted);
-            *attempts = attempts.plus(&of_lap);
+            *attempts = attempts.plus(&model.runs.graph.lap().accepted_shares());
         }
     }
     let [path, exact] = attempts;
